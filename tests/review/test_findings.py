@@ -76,6 +76,31 @@ def test_findings_of_unchanged_part_that_a_new_robot_includes_are_not_new(reposi
     assert [code for code in finding_codes(compare(repository, "HEAD~1..HEAD").new_findings) if code == "LW705"] == []
 
 
+PREFIXED = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+  <xacro:macro name="side" params="prefix">
+    <joint name="${prefix}joint" type="revolute">
+      <parent link="base"/><child link="${prefix}hand"/><limit lower="0" upper="1" effort="1" velocity="1"/>
+    </joint>
+    <link name="${prefix}hand"/>
+  </xacro:macro>
+</robot>
+"""
+CALLER = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+  <xacro:include filename="side.xacro"/><link name="base"/><xacro:side prefix="{}"/>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(("old", "is_new"), [("", False), ("big_", True)])
+def test_a_finding_in_a_macro_is_not_new_if_another_robot_calls_it_with_a_prefix(repository, compare, old, is_new):
+    folder = "arm_description/urdf"
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, f"{folder}/side.xacro": PREFIXED})
+    repository.commit({f"{folder}/arm.urdf.xacro": CALLER.format(old)})
+    repository.write({f"{folder}/a.urdf.xacro": CALLER.format("left_")})
+    codes = finding_codes(compare(repository).new_findings)
+    assert ("LW222" in codes) == is_new
+
+
 def test_findings_of_package_that_only_gets_files_are_not_new(repository, compare):
     manifest = PACKAGE_XML.replace("An arm.", "TODO: Package description")
     repository.commit({"arm_description/package.xml": manifest, SEGMENT: MACRO})

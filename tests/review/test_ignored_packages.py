@@ -57,3 +57,27 @@ def test_lost_file_of_a_package_that_was_not_built_breaks_only_its_users(reposit
     found = breaking(compare(repository))
     assert any(line.startswith("parameter file removed") for line in found) == is_breaking
     assert "names 'config/arm.yaml' of 'arm_description', which no longer exists" in found
+
+
+ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="side" default="left"/>
+  <xacro:property name="side" value="$(arg side)"/>
+  <link name="base"/>
+  <link name="${side}_arm"/>
+  <joint name="${side}_joint" type="revolute">
+    <parent link="base"/> <child link="${side}_arm"/>
+    <limit lower="0" upper="${radians(180)}" effort="1" velocity="1"/>
+  </joint>
+</robot>
+"""
+WORLD = '<sdf version="1.9"><world name="w"><model name="box"><link name="a"/></model></world></sdf>'
+
+
+@pytest.mark.parametrize("marker", ["CATKIN_IGNORE", "parts/COLCON_IGNORE", "parts/arm/COLCON_IGNORE"])
+def test_changed_descriptions_of_packages_that_are_not_built_are_expanded(repository, compare, marker):
+    robot, world = "parts/arm/urdf/arm.urdf.xacro", "parts/arm/worlds/a.world"
+    repository.commit({**FILES, marker: "", robot: ROBOT, world: WORLD})
+    repository.write({robot: ROBOT.replace("180", "90"), world: WORLD.replace('"a"', '"b"')})
+    result = compare(repository)
+    assert sentences(subject(result, robot)) == ["joint 'left_joint': limit upper 3.14159265 -> 1.57079633 rad"]
+    assert breaking(result) == [*sentences(subject(result, robot)), "world w model box link a removed"]

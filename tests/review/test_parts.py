@@ -201,7 +201,7 @@ def test_removed_and_renamed_parts_are_breaking(library, compare):
         "description file added",
         (
             "macro 'gripper' added: parameters name, parent, side:=left, *origin; makes link ${name}, link ${name}_tip,"
-            " joint ${name}_joint, gazebo ${name} (sensor 'camera',"
+            " joint ${name}_joint (prismatic, axis 0 1 0, limits 0 to 0.04), gazebo ${name} (sensor 'camera',"
             " plugin 'driver' (filename=driver.so, topicName image))"
         ),
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
@@ -54,7 +54,9 @@ class Targets:
     named_files: frozenset[Path] = frozenset()
 
 
-def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targets:
+def find_targets(
+    paths: Iterable[Path], *, with_packages: bool = False, entered: Collection[Path] = frozenset()
+) -> Targets:
     """Return the descriptions and packages to check for files and folders.
 
     A file is always checked. The package of a file is checked only with `with_packages`.
@@ -64,12 +66,17 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
     ``.xacro`` files that describe a complete robot. The root of such a file is a ``<robot>`` with a name, and it
     contains more than declarations. Build products, hidden folders and empty files are skipped. JavaScript programs
     inside a package are also skipped, because they have their own URDF readers.
+
+    Args:
+        paths: the files and folders.
+        with_packages: whether the package of a file is checked, too.
+        entered: the folders to search in spite of a file such as ``COLCON_IGNORE``.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            found_files, found_packages = find_files_and_packages(path, DESCRIPTION_SUFFIXES)
+            found_files, found_packages = find_files_and_packages(path, DESCRIPTION_SUFFIXES, entered)
             files.update(dict.fromkeys(_find_entry_files(found_files, found_packages)))
             packages.update(dict.fromkeys(found_packages))
         else:
@@ -82,9 +89,14 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
     return Targets(tuple(files), tuple(packages), frozenset(path for path in paths if not path.is_dir()))
 
 
-def find_included_robots(folder: Path) -> list[Path]:
-    """Return the complete robots in and below a folder that other xacro files include."""
-    files, packages = find_files_and_packages(folder, (_XACRO_SUFFIX,))
+def find_included_robots(folder: Path, entered: Collection[Path] = frozenset()) -> list[Path]:
+    """Return the complete robots in and below a folder that other xacro files include.
+
+    Args:
+        folder: the folder.
+        entered: the folders to search in spite of a file such as ``COLCON_IGNORE``.
+    """
+    files, packages = find_files_and_packages(folder, (_XACRO_SUFFIX,), entered)
     entries = set(_find_entry_files(files, packages))
     return [path for path in files if path not in entries and _describes_robot(path)]
 
@@ -124,18 +136,25 @@ def find_xml_files(paths: Iterable[Path]) -> list[Path]:
     return list(files)
 
 
-def find_files_and_packages(folder: Path, suffixes: tuple[str, ...]) -> tuple[list[Path], list[Path]]:
+def find_files_and_packages(
+    folder: Path, suffixes: tuple[str, ...], entered: Collection[Path] = frozenset()
+) -> tuple[list[Path], list[Path]]:
     """Return the files with some suffixes, and the folders of packages, in and below a folder.
 
     Both are in the order of a walk through folders sorted by name.
+
+    Args:
+        folder: the folder to search.
+        suffixes: the endings of the names of the files.
+        entered: the folders to search in spite of a file such as ``COLCON_IGNORE``.
     """
     files: list[Path] = []
     packages: list[Path] = []
     for directory, folders, names in os.walk(folder):
-        if not IGNORE_MARKERS.isdisjoint(names):
+        absolute_path = Path(directory).absolute()
+        if not IGNORE_MARKERS.isdisjoint(names) and absolute_path not in entered:
             folders.clear()
             continue
-        absolute_path = Path(directory).absolute()
         if (
             _JAVASCRIPT_MANIFEST in names
             and MANIFEST not in names

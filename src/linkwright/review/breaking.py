@@ -177,9 +177,9 @@ def find_plugin_name_reason(difference: Difference) -> Phrase | None:
         difference.new
     )
     if NAMESPACE_TAG.search(tag) and (difference.old or difference.property.endswith("ros namespace")):
-        return None if is_same_name else _namespace_reason(extract_used_name(difference.old or ""))
+        return None if is_same_name else namespace_reason(extract_used_name(difference.old or ""))
     if difference.old and _CAMERA_NAME.fullmatch(tag) and not is_same_name:
-        return _namespace_reason(difference.old)
+        return namespace_reason(difference.old)
     if difference.old and NAME_TAGS.search(tag) and not is_same_name and not _is_refused(difference):
         return name_reason(extract_used_name(difference.old))
     return None
@@ -190,7 +190,7 @@ def _is_refused(difference: Difference) -> bool:
     return "ros remapping" in difference.property and "//" in (difference.old or "")
 
 
-def _namespace_reason(name: str) -> Phrase:
+def namespace_reason(name: str) -> Phrase:
     """Return the reason why another namespace of a plugin is breaking."""
     return phrase(
         "programs do not find the topics and services of the plugin in the namespace '{name}'", name=name or "/"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
@@ -18,6 +20,8 @@ from linkwright.review.folders import finding_without_folders, without_folder
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 
+QUOTED_NAME = re.compile(r"'([^']*)'")
+"""A name in the message of a finding."""
 _UNPARSED_CODE = "LW820"
 """The finding about a ``setup.py`` with a syntax error, of which no other finding is known."""
 
@@ -154,17 +158,51 @@ def compare_findings(
 def _is_at_old_line(finding: Diagnostic, versions: Versions, old: Findings, old_paths: Mapping[str, str]) -> bool:
     """Return whether the old version has the line of a finding in a description, and the same finding elsewhere.
 
-    Such a finding is not new: a robot used a copy of the line, which had the finding.
+    Such a finding is not new: a robot used a copy of the line, which had the finding. At the line itself, a robot may
+    have given another prefix to the names in it.
     """
     path = None if finding.span is None else str(finding.span.file)
     if path is None or not path.endswith(DESCRIPTION_SUFFIXES):
         return False
-    message = str(finding.message)
-    if not any((other.code, str(other.message)) == (finding.code, message) for other in old.diagnostics):
+    old_path, message = old_paths.get(path, path), str(finding.message)
+    line = _find_line(versions.new, finding)
+    if line.text not in versions.old.text(old_path).splitlines():
         return False
+    alike = [item for item in old.diagnostics if item.code == finding.code and _are_alike(str(item.message), message)]
+    return any(
+        str(other.message) == message
+        or (
+            other.span is not None
+            and versions.old.path_of_label(other.span.file) == old_path
+            and _find_line(versions.old, other) == line
+        )
+        for other in alike
+    )
+
+
+class _Line(NamedTuple):
+    """A line of a file, and the number of equal lines before it and in the file."""
+
+    text: str
+    before: int
+    total: int
+
+
+def _find_line(version: Version, finding: Diagnostic) -> _Line:
+    """Return the line of a finding."""
     assert finding.span is not None
-    lines = versions.new.text(path).splitlines()[finding.span.line - 1 : finding.span.line]
-    return bool(lines) and lines[0] in versions.old.text(old_paths.get(path, path)).splitlines()
+    lines = version.text(version.path_of_label(finding.span.file)).splitlines()
+    before, rest = lines[: finding.span.line - 1], lines[finding.span.line - 1 :]
+    text = rest[0] if rest else ""
+    return _Line(text, before.count(text), lines.count(text))
+
+
+def _are_alike(old: str, new: str) -> bool:
+    """Return whether two messages are equal, or differ in quoted names of which one ends with the other."""
+    if QUOTED_NAME.sub("''", old) != QUOTED_NAME.sub("''", new):
+        return False
+    pairs = zip(QUOTED_NAME.findall(old), QUOTED_NAME.findall(new), strict=True)
+    return all(name and other and (name.endswith(other) or other.endswith(name)) for name, other in pairs)
 
 
 def _names_missing_file(finding: Diagnostic, version: Version) -> bool:

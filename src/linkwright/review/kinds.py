@@ -48,6 +48,7 @@ from linkwright.review.given_names import compare_parameters_with_sources
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
 from linkwright.review.launches.helper_modules import compare_launch_helpers
+from linkwright.review.launches.spawned_models import find_spawned_models
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.robots.unpaired_robots import description_contents
@@ -120,7 +121,7 @@ _RULES = (
     ),
     KindRule(
         SubjectKind.WORLD,
-        compare_worlds,
+        partial(compare_worlds, find_spawned_models=find_spawned_models),
         (".sdf", ".world"),
         phrase("world added"),
         phrase("world removed"),
@@ -138,7 +139,7 @@ _RULES = (
     ),
     KindRule(
         SubjectKind.TEMPLATE,
-        compare_worlds,
+        partial(compare_worlds, find_spawned_models=find_spawned_models),
         TEMPLATE_SUFFIXES,
         phrase("template of a model or world added"),
         phrase("template of a model or world removed"),

@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.breaking import namespace_reason
 from linkwright.review.element_values import format_values
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.xmltree import Element
@@ -42,9 +43,9 @@ def find_plugins(element: Element) -> list[Element]:
 
 
 def find_plugin_name(plugin: Element) -> str:
-    """Return the name of a plugin, or else its file, or the class of a hardware plugin."""
+    """Return the name of a plugin, or else its file, or the class of a plugin of hardware or Webots."""
     file = PurePosixPath(plugin.attributes.get("filename", "")).name
-    return plugin.attributes.get("name") or file or plugin.text().strip()
+    return plugin.attributes.get("name") or file or plugin.attributes.get("type") or plugin.text().strip()
 
 
 def find_plugin_topics(plugin: Element) -> list[str]:
@@ -107,7 +108,10 @@ def format_plugins(element: Element, limit: int) -> list[Phrase]:
     parts: list[Phrase] = []
     for child in element.elements():
         if child.tag in _PART_TAGS and child.attributes:
-            attributes = {name: value for name, value in child.attributes.items() if name != "name"}
+            shown = ("type", find_plugin_name(child)) if child.tag == "plugin" else ()
+            attributes = {
+                name: value for name, value in child.attributes.items() if name != "name" and (name, value) != shown
+            }
             texts: list[Phrase | None] = [as_phrase(f"{name}={value}") for name, value in attributes.items()]
             texts += [format_values(child, limit, _PART_TAGS), _format_default_topics(child)]
             title = phrase("plugin '{name}'", name=find_plugin_name(child))
@@ -272,5 +276,17 @@ def find_missing_topics_reason(difference: Difference, added: frozenset[str]) ->
         return None
     topics = [topic for topic in find_topics(element) if topic not in added]
     if not topics:
-        return None
+        return None if find_topics(element) else _find_missing_namespace_reason(element, added)
     return phrase("programs that use {topics} do not find the names", topics=quoted_names(topics))
+
+
+def _find_missing_namespace_reason(element: Element, added: frozenset[str]) -> Phrase | None:
+    """Return why removing a plugin without names of topics but with a namespace is breaking, or None."""
+    namespaces = [
+        namespace
+        for plugin in find_plugins(element)
+        for child in plugin.elements()
+        if NAMESPACE_TAG.search(child.tag) and (namespace := child.text().strip()).strip("/")
+    ]
+    lost = [namespace for namespace in namespaces if namespace not in added]
+    return namespace_reason(lost[0]) if lost else None

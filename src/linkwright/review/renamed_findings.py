@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.review.changes import Change, Subject
+from linkwright.review.findings import QUOTED_NAME
 
-_QUOTED_NAME = re.compile(r"'([^']*)'")
 _ARROW = " -> "
 
 
@@ -56,7 +55,7 @@ def _are_same(old: Diagnostic, new: Diagnostic, renames: set[tuple[str, str]], n
     if old.code != new.code or old_path is None or new_paths.get(old_path, old_path) != new_path:
         return False
     old_message, new_message = str(old.message), str(new.message)
-    if _QUOTED_NAME.sub("''", old_message) != _QUOTED_NAME.sub("''", new_message):
+    if QUOTED_NAME.sub("''", old_message) != QUOTED_NAME.sub("''", new_message):
         return False
-    names = zip(_QUOTED_NAME.findall(old_message), _QUOTED_NAME.findall(new_message), strict=True)
+    names = zip(QUOTED_NAME.findall(old_message), QUOTED_NAME.findall(new_message), strict=True)
     return all(pair[0] == pair[1] or pair in renames for pair in names)

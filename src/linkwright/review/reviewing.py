@@ -562,8 +562,9 @@ def _find_targets(version: Version) -> set[str]:
     A robot that another description includes also counts as complete if a launch file starts it.
     """
     checker = version.checker()
-    started = [file for file in find_included_robots(version.root) if checker.calls(file, ())]
-    files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
+    started = [file for file in find_included_robots(version.root, version.entered) if checker.calls(file, ())]
+    targets = find_targets([version.root], entered=version.entered)
+    files = (version.relative(file) for file in (*targets.files, *started))
     return {path for path in files if path is not None} | find_semantic_files(version)
 
 

@@ -16,9 +16,17 @@ from linkwright.descriptions.revisions import CommitFiles, leads_outside
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path, phrase
 from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitRepository
 from linkwright.lint.checking import Checker
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES as TARGET_SUFFIXES
 from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
-from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
+from linkwright.packages.manifest import (
+    IGNORE_MARKERS,
+    MANIFEST,
+    ROSBUILD_MANIFEST,
+    SKIPPED_FOLDERS,
+    SourceScan,
+    package_name,
+)
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files
 from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts, is_of_ros1
@@ -48,6 +56,7 @@ class Version:
         commit: the files of the commit; None for the working tree.
         repository: the repository of both versions.
         is_old: whether it is the old version.
+        entered: the folders that build tools skip, but that contain changed descriptions.
     """
 
     name: str
@@ -55,6 +64,7 @@ class Version:
     commit: CommitFiles | None
     repository: GitRepository
     is_old: bool
+    entered: frozenset[Path] = frozenset()
 
     def file(self, path: str) -> Path:
         """Return the file at a path relative to the root."""
@@ -299,7 +309,24 @@ def open_versions(folder: Path, range_text: str) -> Versions:
         stack.pop_all()
         paired_files = _pair_empty_files(old, new, _drop_files_of_submodules(changed_files))
         files = [file for file in paired_files if not _is_blank(old, new, file)]
-        return Versions(old, new, [_without_empty_version(old, file) for file in files])
+        files = [_without_empty_version(old, file) for file in files]
+        return Versions(_enter_skipped_folders(old, files), _enter_skipped_folders(new, files), files)
+
+
+def _enter_skipped_folders(version: Version, files: list[ChangedFile]) -> Version:
+    """Return a version in which changed descriptions are found in spite of files such as ``COLCON_IGNORE``.
+
+    Some repositories have such a file until an installation script deletes it.
+    """
+    paths = {path for file in files for path in (file.old_path, file.new_path) if path is not None}
+    folders = {
+        version.file(parent.as_posix())
+        for path in paths
+        if path.endswith(TARGET_SUFFIXES)
+        for parent in PurePosixPath(path).parents
+    }
+    entered = {folder for folder in folders if any((folder / marker).is_file() for marker in IGNORE_MARKERS)}
+    return replace(version, entered=frozenset(entered)) if entered else version
 
 
 def _pair_empty_files(old: Version, new: Version, files: list[ChangedFile]) -> list[ChangedFile]:

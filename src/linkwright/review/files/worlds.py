@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
@@ -31,6 +31,7 @@ from linkwright.review.files.sdf_numbers import (
     join_inertials,
     parse_numbers,
 )
+from linkwright.review.files.spawned_models import POSE_LENGTH, SpawnedModel
 from linkwright.review.files.template_macros import PARAMETERS, find_parameters_reason
 from linkwright.review.files.templates import is_template, may_be_equal, read_template
 from linkwright.review.joint_limits import find_written_reason
@@ -47,7 +48,7 @@ from linkwright.review.plugins import (
     is_removed,
 )
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
-from linkwright.review.versions import Version
+from linkwright.review.versions import Version, Versions
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -57,7 +58,11 @@ _WORLD_SUFFIX = ".world"
 _NAMED_TAGS = ("world", "model", "include", "link", "joint", "sensor", "frame")
 _NAMED_ELEMENT = re.compile(rf"(?:^|.* )(?P<tag>{'|'.join(_NAMED_TAGS)}) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
-_POSE, _POSE_LENGTH = " pose", 6
+_MODEL_PATH = re.compile(r"(?:world \S+ )?(?:model|include) (?P<name>\S+)")
+"""The path of a model of a world."""
+_STATE_PATH = re.compile(r"(?:world \S+ )?state (?:\S+ )?model (?P<name>\S+)")
+"""The path of the state of a model, or of a part of it."""
+_POSE = " pose"
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _JOINT_LIMIT = re.compile(r"\bjoint (?P<name>\S+) axis2? limit (?P<side>lower|upper)$")
@@ -82,8 +87,13 @@ def is_other_world(file: Path) -> bool:
         return False
 
 
-def compare_worlds(pair: FilePair) -> None:
-    """Compare two versions of a file in SDF, without the models that it includes."""
+def compare_worlds(pair: FilePair, find_spawned_models: Callable[[Versions, str], Mapping[str, SpawnedModel]]) -> None:
+    """Compare two versions of a file in SDF, without the models that it includes.
+
+    Args:
+        pair: both versions of the file.
+        find_spawned_models: a function that returns the models which launch files newly spawn in a world, by name.
+    """
     elements = pair.read(_read_elements)
     if elements is None:
         return
@@ -91,10 +101,11 @@ def compare_worlds(pair: FilePair) -> None:
     joined_differences = list(join_inertials(drop_rounding(changed)))
     topics = find_added_topics(joined_differences)
     pair.added_topics |= find_offered_topics(joined_differences)
-    differences = merge_replaced_plugins(joined_differences)
+    differences = _drop_states_of_lost_models(merge_replaced_plugins(joined_differences))
     changes = [
         _WorldChange(difference, _find_breaking_reason(difference, topics, elements[1])) for difference in differences
     ]
+    changes = _mark_spawned_models(changes, lambda: find_spawned_models(pair.versions, pair.new_path))
     separate: list[_WorldChange] = []
     for group in _group_equal_changes(changes):
         parts = trim_common_words([change.path for change in group])
@@ -111,6 +122,37 @@ def compare_worlds(pair: FilePair) -> None:
     pair.changes += _find_left_names(pair, *elements)
     if differences and not is_template(pair.new_path):
         _report_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
+
+
+def _drop_states_of_lost_models(differences: Sequence[Difference]) -> list[Difference]:
+    """Return the differences without the states of models that only one version has."""
+    lost = {match["name"] for match in map(_MODEL_PATH.fullmatch, map(_join_path, differences)) if match is not None}
+    states = {id(item): match["name"] for item in differences if (match := _STATE_PATH.match(_join_path(item)))}
+    return [item for item in differences if states.get(id(item)) not in lost]
+
+
+def _join_path(difference: Difference) -> str:
+    return f"{difference.name} {difference.property}".strip()
+
+
+def _mark_spawned_models(
+    changes: Sequence[_WorldChange], find_models: Callable[[], Mapping[str, SpawnedModel]]
+) -> list[_WorldChange]:
+    """Return the changes, in which a model that a launch file spawns instead breaks nothing."""
+    removed = {
+        number: match["name"]
+        for number, change in enumerate(changes)
+        if is_removed(change.difference) and change.difference.element is not None
+        if (match := _MODEL_PATH.fullmatch(change.path)) is not None
+    }
+    spawned = find_models() if removed else {}
+    result = list(changes)
+    for number, name in removed.items():
+        element = changes[number].difference.element
+        if name in spawned and element is not None:
+            text = spawned[name].describe_move(changes[number].path, element)
+            result[number] = replace(changes[number], reason=None, text=text)
+    return result
 
 
 def _find_left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Element]) -> Iterator[Change]:
@@ -185,15 +227,22 @@ def _is_model(elements: Sequence[Element]) -> bool:
 
 @dataclass(frozen=True)
 class _WorldChange:
-    """A difference between two worlds, and the reason why it is breaking."""
+    """A difference between two worlds, and the reason why it is breaking.
+
+    Attributes:
+        difference: the difference.
+        reason: why it is breaking; None if it is not.
+        text: the sentence, if it is known; else None.
+    """
 
     difference: Difference
     reason: Phrase | None
+    text: Phrase | None = None
 
     @property
     def path(self) -> str:
         """The names of the elements and of the value that differ."""
-        return f"{self.difference.name} {self.difference.property}".strip()
+        return _join_path(self.difference)
 
     @property
     def kind(self) -> Hashable:
@@ -213,15 +262,18 @@ class _WorldChange:
 
     def location(self, pair: FilePair) -> Location | None:
         """Return the location in the new world, or in the old world for a removed element."""
-        location = self.difference.new_place or self.difference.old_place
-        return None if location is None else pair.location(location.span, is_old=self.difference.new_place is None)
+        is_old = self.difference.new_place is None or (
+            is_removed(self.difference) and self.difference.old_place is not None
+        )
+        location = self.difference.old_place if is_old else self.difference.new_place
+        return None if location is None else pair.location(location.span, is_old=is_old)
 
 
 def _group_equal_changes(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
     """Yield groups of changes that are equal except for the names of the elements."""
     groups: dict[Hashable, list[_WorldChange]] = {}
     for number, change in enumerate(changes):
-        is_alone = change.reason is not None or change.is_renamed
+        is_alone = change.reason is not None or change.is_renamed or change.text is not None
         groups.setdefault(number if is_alone else (to_path_pattern(change.path), change.kind), []).append(change)
     yield from groups.values()
 
@@ -231,10 +283,12 @@ def _report_separately(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
     merged = MergedPaths()
     first_changes: list[_WorldChange] = []
     for change in changes:
-        if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(first_changes):
+        is_alone = change.is_renamed or change.text is not None
+        if merged.add(change.path, id(change) if is_alone else change.kind) == len(first_changes):
             first_changes.append(change)
     for path, change in zip(merged.paths, first_changes, strict=True):
-        pair.add(_describe_difference(change.difference, path), change.location(pair), change.reason)
+        text = change.text or _describe_difference(change.difference, path)
+        pair.add(text, change.location(pair), change.reason)
 
 
 def _read_elements(file: Path) -> list[Element]:
@@ -273,7 +327,7 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
         old, new = differing_excerpts(difference.old or "", difference.new or "")
         text = phrase("{element}: {old} -> {new}", element=name, old=old or empty, new=new or empty)
         poses = parse_numbers(difference.old), parse_numbers(difference.new)
-        is_pose = name.endswith(_POSE) and list(map(len, poses)) == [_POSE_LENGTH, _POSE_LENGTH]
+        is_pose = name.endswith(_POSE) and list(map(len, poses)) == [POSE_LENGTH, POSE_LENGTH]
         return add_pose_motion(text, *poses) if is_pose else text
     content = difference.old if difference.element is None else format_own_content(difference.element)
     text = phrase("{element} removed", element=f"{name} {content or ''}".strip())

@@ -7,9 +7,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import replace
 from functools import cached_property
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import FILE, Change, Effect, ExpandedElement, Subject, SubjectKind
+from linkwright.review.changes import FILE, MAX_NAMES, Change, Effect, ExpandedElement, Subject, SubjectKind
 from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
@@ -174,7 +174,17 @@ class _Comparer:
             contents = format_written_contents(outline)
             if contents is not None:
                 yield Change(phrase("contains {contents}", contents=contents))
-        yield from _report_added_macros(outline)
+        yield from _report_added_macros(outline, lambda name: self._find_other_definitions(file.path, name))
+
+    def _find_other_definitions(self, path: str, macro: str) -> list[str]:
+        """Return the other files of the package of a file that define a macro, in both versions."""
+        find_package = self._versions.new.package_of
+        return [
+            other
+            for other in self._graphs.new.find_files_with_macro(macro)
+            if other != path and find_package(other) == find_package(path)
+            if macro in self._graphs.old.find_macros(other)
+        ]
 
     def _make_pair(self, file: ChangedFile) -> PartPair | None:
         """Return both versions of a file, or None if one of them is missing or cannot be read."""
@@ -265,8 +275,13 @@ def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:
         yield Change(text, Effect.BREAKING, make_macro_removal_reason(), other_names=tuple(names[1:]))
 
 
-def _report_added_macros(outline: Outline) -> Iterator[Change]:
-    """Yield the changes that macros were added with their file, few of them with their parameters and contents."""
+def _report_added_macros(outline: Outline, find_others: Callable[[str], Sequence[str]]) -> Iterator[Change]:
+    """Yield the changes that macros were added with their file, few of them with their parameters and contents.
+
+    Args:
+        outline: the added file.
+        find_others: a function that returns the other files which define a macro.
+    """
     macros = list(outline.macros.values())
     if len(macros) > _MAX_MACROS:
         yield Change(phrase("macro '{name}' added", name=macros[0].name), other_names=tuple(outline.macros)[1:])
@@ -274,7 +289,11 @@ def _report_added_macros(outline: Outline) -> Iterator[Change]:
     for macro in macros:
         text = phrase("macro '{name}' added", name=macro.name)
         contents = summarize_macro(macro)
-        yield Change(phrase("{change}: {contents}", change=text, contents=contents) if contents else text)
+        text = phrase("{change}: {contents}", change=text, contents=contents) if contents else text
+        others = find_others(macro.name)
+        if others:
+            text = phrase("{change}; also defined by {names}", change=text, names=joined_first(others, MAX_NAMES))
+        yield Change(text)
 
 
 def _compare_whole_file(

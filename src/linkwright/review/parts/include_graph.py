@@ -127,7 +127,7 @@ class IncludeGraph:
 
     @cached_property
     def _description_files(self) -> tuple[list[Path], list[Path]]:
-        return find_files_and_packages(self._version.root, DESCRIPTION_SUFFIXES)
+        return find_files_and_packages(self._version.root, DESCRIPTION_SUFFIXES, self._version.entered)
 
     @cached_property
     def _outlines(self) -> dict[str, Outline]:

@@ -108,7 +108,7 @@ def _report_lost_properties(
     lost = {
         name: definitions[0]
         for name, definitions in old.items()
-        if name not in defined and any(definition.macro is None for definition in definitions)
+        if name not in defined and name not in new and any(definition.macro is None for definition in definitions)
     }
     if not lost:
         return

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.parts.interface import format_parameter
@@ -14,6 +14,14 @@ from linkwright.xmltree import Element
 
 _MAX_CONTENTS = 20
 """The maximum number of elements of an added macro or file in a line."""
+_COMPONENTS: Mapping[str, Callable[[Phrase], Phrase]] = {
+    "joint": lambda names: phrase("joints {names}", names=names),
+    "sensor": lambda names: phrase("sensors {names}", names=names),
+    "gpio": lambda names: phrase("GPIO {names}", names=names),
+}
+"""The functions that return the title of the parts of hardware, by tag."""
+_MAX_DEVICES = 40
+"""The maximum number of devices of an element for Webots in a line."""
 _MAX_PLUGIN_VALUES = 6
 """The maximum number of values of each sensor and plugin in a line."""
 
@@ -58,5 +66,88 @@ def _summarize_elements(element: Element) -> list[Phrase]:
 
 def _summarize_item(item: Item) -> Phrase:
     """Return an element of a macro; one for Gazebo with its sensors and plugins."""
-    contents = format_plugins(item.element, _MAX_PLUGIN_VALUES) if item.element.tag == "gazebo" else []
+    format_parts = _FORMATTERS.get(item.element.tag)
+    contents = [] if format_parts is None else list(format_parts(item.element))
     return phrase("{entry} ({items})", entry=item.key, items=joined(contents)) if contents else as_phrase(item.key)
+
+
+def _format_plugins(element: Element) -> list[Phrase]:
+    return format_plugins(element, _MAX_PLUGIN_VALUES)
+
+
+def _format_devices(element: Element) -> Iterator[Phrase]:
+    """Yield the devices of an element for Webots with their topics, and its plugins."""
+    devices = []
+    for device in element.walk():
+        topic = next((child.text().strip() for child in device.walk() if child.tag == "topicName"), "")
+        if device.tag == "device":
+            name = device.attributes.get("reference", "")
+            is_same = not topic or not name or topic.strip("/") == name
+            devices.append((topic or name) if is_same else f"{name} ({topic})")
+    if devices:
+        yield counted(
+            "{count} device: {names}",
+            "{count} devices: {names}",
+            len(devices),
+            names=joined_first(devices, _MAX_DEVICES),
+        )
+    yield from _format_plugins(element)
+
+
+def _format_joint(element: Element) -> Iterator[Phrase]:
+    """Yield the type, axis and limits of a moving joint, as they are written."""
+    kind = element.attributes.get("type", "fixed")
+    if kind == "fixed":
+        return
+    yield as_phrase(kind)
+    axis, limit, mimic = (_find_attributes(element, tag) for tag in ("axis", "limit", "mimic"))
+    if "xyz" in axis:
+        yield phrase("axis {value}", value=axis["xyz"])
+    if "lower" in limit or "upper" in limit:
+        yield phrase("limits {lower} to {upper}", lower=limit.get("lower", "0"), upper=limit.get("upper", "0"))
+    if "joint" in mimic:
+        yield phrase("mimics {name}", name=mimic["joint"])
+
+
+def _find_attributes(element: Element, tag: str) -> Mapping[str, str]:
+    """Return the attributes of the only descendant with a tag; none if there are several."""
+    found = [child.attributes for child in element.walk() if child.tag == tag]
+    return found[0] if len(found) == 1 else {}
+
+
+def _format_hardware(element: Element) -> Iterator[Phrase]:
+    """Yield the plugins of an element of ros2_control, and its joints and sensors with their interfaces."""
+    plugins = [child.text().strip() for child in element.walk() if child.tag == "plugin"]
+    if any(plugins):
+        yield phrase("plugin {names}", names=joined_first(list(filter(None, dict.fromkeys(plugins))), MAX_NAMES))
+    names: dict[tuple[str, str, str], list[str]] = {}
+    for child in element.walk():
+        if child.tag in _COMPONENTS and "name" in child.attributes:
+            commands, states = (_format_interfaces(child, f"{word}_interface") for word in ("command", "state"))
+            names.setdefault((child.tag, commands, states), []).append(child.attributes["name"])
+    for (tag, commands, states), of_tag in names.items():
+        title = _COMPONENTS[tag](joined_first(of_tag, MAX_NAMES))
+        parts = [phrase("commands {names}", names=commands)] if commands else []
+        parts += [phrase("states {names}", names=states)] if states else []
+        yield phrase("{entry}: {items}", entry=title, items=joined(parts)) if parts else title
+
+
+def _format_interfaces(element: Element, tag: str) -> str:
+    """Return the interfaces of a joint or sensor of ros2_control with their ranges."""
+    texts: list[str] = []
+    for child in element.walk():
+        if child.tag == tag:
+            values = {item.attributes.get("name", ""): item.text().strip() for item in child.elements()}
+            is_limited = values.get("min") and values.get("max")
+            limits = [f"[{values['min']}, {values['max']}]"] if is_limited else []
+            texts.append(" ".join([child.attributes.get("name", ""), *limits]))
+    return ", ".join(texts)
+
+
+_FORMATTERS: Mapping[str, Callable[[Element], Iterable[Phrase]]] = {
+    "gazebo": _format_plugins,
+    "joint": _format_joint,
+    "ros2_control": _format_hardware,
+    "webots": _format_devices,
+}
+"""The functions that yield the contents of elements, by tag."""

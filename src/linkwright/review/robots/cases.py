@@ -27,7 +27,8 @@ _MAX_CASES = 12
 
 MAX_SWITCHES = 8
 """The maximum number of boolean arguments whose opposite value is tried."""
-_MISSING_CODES = ("PKG101", "XML101")
+_PACKAGE_CODE = "PKG101"
+_MISSING_CODES = (_PACKAGE_CODE, "XML101")
 """The codes of packages and files that are not found."""
 OPPOSITES: Mapping[str, str] = {"true": "false", "false": "true", "True": "False", "False": "True"}
 _NUMERIC_OPPOSITES: Mapping[str, str] = {"0": "1", "1": "0"}
@@ -181,7 +182,7 @@ def _make_case(pair: FilePair, name: str, values: _ArgumentValues) -> Case | _Fa
         return Case(name, old, new, models)
     partial = _read_partial_pair(models)
     if partial is None:
-        return _Failure(name, values, old, new)
+        return _Failure(name, values, old, _read_without_packages(models, old, new) or new)
     old_error, new_error = partial.old.error, partial.new.error
     if old_error is None and new_error is None:
         pair.missing.update(dict.fromkeys(find_missing_names(partial, models.old, models.new)))
@@ -298,6 +299,19 @@ def _read_partial_pair(models: Pair) -> PartialPair | None:
         return None
     partial = PartialPair(old, new)
     return partial if find_missing_names(partial, models.old, models.new) else None
+
+
+def _read_without_packages(
+    models: Pair, old: Description | LinkwrightError, new: Description | LinkwrightError
+) -> Description | None:
+    """Return the new description without packages that neither version has, if the old one fails for other reasons."""
+    if isinstance(old, Description) or isinstance(new, Description) or new.diagnostics[0].code != _PACKAGE_CODE:
+        return None
+    partial = read_partial_robot(models.new)
+    if partial is None or partial.description.robot is None or partial.omissions.files:
+        return None
+    is_of_both = all(models.old.finder.find(package) is None for package in partial.omissions.packages)
+    return partial.description if is_of_both and old.diagnostics[0].code != _PACKAGE_CODE else None
 
 
 def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
