@@ -131,3 +131,46 @@ def test_included_file_of_another_repository_may_publish_a_transform(
     ]
     assert (removed.reason is None) == may_publish
     assert ("may publish its transform" in str(removed.sentence)) == may_publish
+
+
+DRIVER = '<node pkg="arm" type="driver" name="driver"><param name="frame_id" value="FRAME"/></node>'
+STATE = '<node pkg="robot_state_publisher" type="robot_state_publisher" name="state"/>'
+CAMERA_STATIC = STATIC.replace("PARENT", "base").replace("CHILD", "camera")
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "other", "is_breaking"),
+    [
+        ("lens", "camera", "", False),
+        ("lens", "other", "", True),
+        ("camera", "lens", "", True),
+        ("lens", "camera", '<include file="$(find other_arm)/launch/state.launch"/>', True),
+        ("link", "camera", "", False),
+    ],
+)
+def test_sensor_that_gets_the_frame_of_a_static_transform_is_repaired(
+    repository, compare, first, second, other, is_breaking
+):
+    path, text = "arm/launch/arm.launch", f"<launch>{CAMERA_STATIC}{DRIVER}{other}</launch>"
+    files = {
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+        "arm/urdf/arm.urdf": '<robot name="a"><link name="link"/></robot>',
+        "arm/launch/all.launch": f"<launch>{STATE}{DRIVER.replace('FRAME', 'link')}</launch>",
+    }
+    repository.commit({**files, path: text.replace("FRAME", first)})
+    repository.write({path: text.replace("FRAME", second)})
+    (change,) = subject(compare(repository), path).changes
+    assert (change.reason is not None) is is_breaking
+
+
+def test_robot_of_another_launch_file_may_have_the_frame_of_a_sensor(repository, compare):
+    path, text = "arm/launch/arm.launch", f"<launch>{CAMERA_STATIC}{DRIVER}</launch>"
+    files = {
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+        "arm/urdf/arm.urdf": '<robot name="a"><link name="link"/></robot>',
+        "arm/launch/all.launch": f"<launch>{STATE}</launch>",
+    }
+    repository.commit({**files, path: text.replace("FRAME", "link")})
+    repository.write({path: text.replace("FRAME", "camera")})
+    (change,) = subject(compare(repository), path).changes
+    assert str(change.reason) == "programs that use the name 'link' do not find it"

@@ -111,3 +111,23 @@ def test_zeros_and_empty_values_of_a_long_added_file_come_last(repository, compa
     assert all(f"rate{number} 5" in line for number in range(15))
     assert "zero0 0.0" in line
     assert "zero19" not in line
+
+
+UNNAMED = "thrusters:\n" + "".join(f"- {{pose: [{x}, 0, 1], rate: 5}}\n" for x in range(4))
+NAMED = "thrusters:\n" + "".join(f"- {{name: T{x}, pose: [{x}, 0, 1], rate: 5}}\n" for x in range(4))
+NAMES = tuple(f"thrusters[T{x}].name" for x in range(4))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (UNNAMED, NAMED, [(f"{NAMES[0]} added", NAMES[1:])]),
+        (NAMED, UNNAMED, [(f"{NAMES[0]} removed", NAMES[1:])]),
+        (UNNAMED, NAMED.replace("[2, 0, 1]", "[2, 0, 7]"),
+         [("thrusters[T2].pose [2, 0, 1] -> [2, 0, 7]", ()), (f"{NAMES[0]} added", NAMES[1:])]),
+        ("thrusters:\n- {pose: [0, 0, 1]}\n", "thrusters:\n- {name: T0, rate: 6}\n",
+         [("thrusters[T0] rate 6 added", ()), ("thrusters[old 0].pose [0, 0, 1] removed", ())]),
+    ],
+)  # fmt: skip
+def test_items_of_a_list_match_if_only_one_version_has_names(lines, old, new, expected):
+    assert lines(old, new) == expected

@@ -17,6 +17,8 @@ from linkwright.review.merging import name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list item without a name."""
+_ITEM_NAME = re.compile(r"(?P<list>.+)\[(?P<label>[^\[\]]+)\]\.(?P<key>\w+)")
+"""The path of a value directly in a list item."""
 _INDEX = re.compile(r"\[(\d+)\]")
 _NUMBER = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
@@ -81,10 +83,13 @@ class ValueChange:
 
     @property
     def sibling_key(self) -> Hashable | None:
-        """A key that is equal for values of one name that sibling parts add or remove.
+        """A key that is equal for values of one name that sibling parts add or remove, and for names of list items.
 
         None for other values.
         """
+        item = _ITEM_NAME.fullmatch(self.name)
+        if item is not None and self.kind != "changed" and self.values == (item["label"],) and self.reason is None:
+            return self.kind, item["list"], item["key"], None  # the names of the items
         parent, *inner_names = self.name.rsplit(".", 2)
         if self.kind == "changed" or len(inner_names) < 2:
             return None

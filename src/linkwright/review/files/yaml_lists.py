@@ -49,8 +49,13 @@ def find_item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
 def _match_items(
     old: yaml.Node, new: yaml.Node, labels: dict[int, str], texts: dict[int, str]
 ) -> list[tuple[yaml.Node, yaml.Node]]:
-    """Label the items of two lists, and return the matched items that differ."""
-    old_names = {name: item for item in old.value if (name := find_item_name(item)) is not None}
+    """Label the items of two lists, and return the matched items that differ.
+
+    If only one version has names for its items, items match by their other values.
+    """
+    old_names, new_names = (
+        {name: item for item in node.value if (name := find_item_name(item)) is not None} for node in (old, new)
+    )
     pairs = [(old_names[name], item) for item in new.value if (name := find_item_name(item)) in old_names]
     old_items, new_items = ([item for item in node.value if find_item_name(item) is None] for node in (old, new))
     if len(old_items) * len(new_items) > _MAX_COMPARISONS:
@@ -60,6 +65,16 @@ def _match_items(
     for i, k in _align(old_items, new_items, texts):
         labels[id(old_items[i])] = labels[id(new_items[k])]
         pairs.append((old_items[i], new_items[k]))
+    if old_items and not new_items:
+        named = [(name, item) for name, item in new_names.items() if name not in old_names]
+        for i, k in _match_similar_items(old_items, [item for _, item in named]):
+            labels[id(old_items[i])] = named[k][0]
+            pairs.append((old_items[i], named[k][1]))
+    elif new_items and not old_items:
+        named = [(name, item) for name, item in old_names.items() if name not in new_names]
+        for i, k in _match_similar_items([item for _, item in named], new_items):
+            labels[id(new_items[k])] = named[i][0]
+            pairs.append((named[i][1], new_items[k]))
     return pairs
 
 

@@ -42,12 +42,23 @@ def find_node_remapping_reason(
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
         return None  # the new file gives the name to a different topic of the node
-    is_description = (program, source.lstrip("/")) == _DESCRIPTION and not new_outline.is_ros1
     if old is not None and is_taken_over(entry, old, old_outline, new_outline):
         return None
-    return find_remapping_reason(
-        source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS or is_description
-    )
+    is_known = publishes(program, source, old_outline, new_outline)
+    return find_remapping_reason(source, old, new, old_outline, new_outline, is_known=is_known)
+
+
+def publishes(program: str, source: str, old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a program certainly publishes or serves a name.
+
+    Args:
+        program: the package and the executable of the node, or its class.
+        source: the name that the node itself gives to the topic or service.
+        old: the outline of the old file.
+        new: the outline of the new file.
+    """
+    is_description = (program, source.lstrip("/")) == _DESCRIPTION and not new.is_ros1
+    return is_description or find_old_side(program, source, old.root, new.root) is Side.OFFERS
 
 
 def find_remapping_reason(

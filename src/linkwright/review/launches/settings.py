@@ -37,7 +37,7 @@ from linkwright.review.launches.renames import rename_in_text
 from linkwright.review.launches.simulated_hardware import find_clock_reason
 from linkwright.review.launches.static_transforms import SAME_TRANSFORM, compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
-from linkwright.review.launches.transforms import starts_robot_with_link
+from linkwright.review.launches.transforms import gets_transform, starts_robot_with_link
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
 
@@ -261,8 +261,11 @@ class SettingChanges:
             return None
         if reason is not None and setting.startswith(PARAMETER) and offers_frame(setting.removeprefix(PARAMETER)):
             # programs still find the transform of the old frame
-            has_frame = starts_robot_with_link(self._old.resolve(old or ""), self._included, self._pair.versions.new)
-            return None if has_frame else reason
+            frames = self._old.resolve(old or ""), self._new.resolve(new or "")
+            versions = self._pair.versions
+            has_frame = starts_robot_with_link(frames[0], self._included, versions.new)
+            is_repair = gets_transform(entry.name, *frames, self._old_included, self._included, versions.old)
+            return None if has_frame or is_repair else reason
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None

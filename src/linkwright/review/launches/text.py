@@ -8,12 +8,20 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
-from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, split_text, with_condition
+from linkwright.review.launches.outlines import split_text, with_condition
 from linkwright.review.launches.python_syntax import find_list_item
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
+from linkwright.review.launches.substitution_texts import (
+    Formatter,
+    format_substitution,
+    get_call_arguments,
+    is_configurations,
+    is_string,
+    split_pieces,
+)
 from linkwright.review.launches.text_templates import format_template, strip_conversion
 from linkwright.review.list_changes import EMPTY
 
@@ -24,18 +32,7 @@ _MAX_FUNCTION_DEPTH = 3
 """The maximum number of functions that return the value of each other."""
 _VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
 """The expressions of a function whose value is known, apart from calls and names."""
-_CONFIGURATIONS = "launch_configurations"
-"""The attribute of a launch context with the values of the arguments."""
-_Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
-_PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
-_COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
-_PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "dirname")
-_STRING_FUNCTIONS = (*_PATH_FUNCTIONS, "str", "getenv", "format")
-_PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
-"""A command with an explicit search for the program. The text omits the search, which is the default."""
-_QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
-"""An expression that is only a quoted text."""
 _NON_STRING = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -169,7 +166,7 @@ class ExpressionTexts:
         """Return whether an expression is not a call of an unknown function, or a name of unknown value."""
         node = self.python.resolved(node)
         if isinstance(node, ast.Call):
-            return self._format_substitution(node, self.text) is not None or self._find_result(node) is not None
+            return format_substitution(self.python, node, self.text) is not None or self._find_result(node) is not None
         if isinstance(node, ast.Name):
             return node.id in self._bindings
         return isinstance(node, _VALUES)
@@ -259,7 +256,7 @@ class ExpressionTexts:
 
     def format_joined(self, node: ast.expr) -> str:
         """Return an expression as text. A list of substitutions is joined."""
-        return "".join(map(self.text, self._split_pieces(node)))
+        return "".join(map(self.text, split_pieces(self.python, node)))
 
     def format_condition(self, node: ast.expr | None) -> str:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
@@ -271,7 +268,7 @@ class ExpressionTexts:
         if isinstance(node, ast.Constant) and node.value is None:
             return ""
         if isinstance(node, ast.Call):
-            function, arguments = called_name(node).rpartition(".")[2], _get_call_arguments(node)
+            function, arguments = called_name(node).rpartition(".")[2], get_call_arguments(node)
             if function in _ARGUMENT_CONDITIONS and arguments:
                 return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
             if function in _COMPARISON_CONDITIONS and len(arguments) > 1:
@@ -392,19 +389,19 @@ class ExpressionTexts:
         if template is not None:
             return template
         if isinstance(node, ast.Call):
-            substitution = self._format_substitution(node, part)
+            substitution = format_substitution(self.python, node, part)
             result = self._find_result(node) if substitution is None else None
             if result is not None:
                 return result.texts.text(result.node, depth + 1)
             return split_text(_format_call(node, part)) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
+            return f"{part(node.left)}{'' if is_string(self.python, node) else ' + '}{part(node.right)}"
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             return f"{part(node.left)}/{part(node.right)}"
         if isinstance(node, ast.JoinedStr):
             return "".join(self._format_text_part(item, part) for item in node.values)
         if isinstance(node, ast.Subscript):
-            if self._is_configurations(node.value):
+            if is_configurations(self.python, node.value):
                 return f"$(var {part(node.slice)})"
             item = self._find_item(node)
             if item.node is not node:
@@ -418,11 +415,11 @@ class ExpressionTexts:
             return f"{part(node.value)}.{node.attr}"
         return unparse_on_one_line(node)
 
-    def _format_text_part(self, item: ast.expr, part: _Formatter) -> str:
+    def _format_text_part(self, item: ast.expr, part: Formatter) -> str:
         """Return a part of a formatted text."""
         return self._format_value(item.value, part) if isinstance(item, ast.FormattedValue) else part(item)
 
-    def _format_value(self, node: ast.expr, part: _Formatter) -> str:
+    def _format_value(self, node: ast.expr, part: Formatter) -> str:
         """Return a value in a formatted text. A substitution is an object, which has no value there."""
         is_bound = isinstance(node, ast.Name) and node.id in self._bindings
         value = strip_conversion(node if is_bound else self.python.resolved(node))
@@ -462,96 +459,6 @@ class ExpressionTexts:
                 return owner.texts.resolve(item)
         return BoundExpression(self, node)
 
-    def _format_substitution(self, node: ast.Call, part: _Formatter) -> str | None:
-        """Return a substitution in the notation of XML launch files, or None for any other call."""
-        function = called_name(node).rpartition(".")[2]
-        arguments = _get_call_arguments(node)
-        first = arguments[0] if arguments else None
-        if function == "LaunchConfiguration":
-            default = argument_of(node, "default")
-            return f"$(var {part(first)})" if default is None else f"$(var {part(first)} {part(default)})"
-        if function == "get" and isinstance(node.func, ast.Attribute) and self._is_configurations(node.func.value):
-            return f"$(var {' '.join(map(part, arguments))})"
-        if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
-            return f"$(find-pkg-share {part(first)})"
-        if function in ("FindPackagePrefix", "get_package_prefix"):
-            return f"$(find-pkg-prefix {part(first)})"
-        if function == "ThisLaunchFileDir":
-            return "$(dirname)"
-        if function == "find" and isinstance(node.func, ast.Attribute):
-            owner = self.python.resolved(node.func.value)
-            is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
-            return part(owner) if is_share else None
-        if function == "perform" and isinstance(node.func, ast.Attribute):
-            return part(node.func.value)
-        if first is None:
-            return None
-        if function == "perform_substitution":
-            return part(first)
-        if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:
-            left, right = (part(argument) or EMPTY for argument in arguments[:2])
-            return f"{left} {_COMPARISON_SUBSTITUTIONS[function]} {right}"
-        if function == "FindExecutable":
-            return f"$(find-exec {part(first)})"
-        if function in ("PathJoinSubstitution", "join"):
-            if function != "join" and isinstance(self.python.resolved(first), ast.Call):
-                return None  # it fails: only a list can be joined
-            pieces = arguments if function == "join" else self._split_pieces(first)
-            return _join_path(["".join(map(part, self._split_pieces(piece))) for piece in pieces])
-        if function == "ParameterFile":
-            return part(first) + self._mark_substitutions(argument_of(node, ALLOW_SUBSTITUTIONS))
-        if function in _PATH_CLASSES and len(node.args) > 1:
-            return _join_path([part(argument) for argument in node.args])
-        if function in ("TextSubstitution", "str", "ParameterValue", "PathSubstitution", *_PATH_CLASSES):
-            return part(first)
-        if function == "EnvironmentVariable":
-            return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
-        if function == "PythonExpression":
-            return _format_expression("".join(map(part, self._split_pieces(first))))
-        if function == "Command":
-            command = _PROGRAM_SEARCH.sub(r"\1", "".join(map(part, self._split_pieces(first))))
-            return f"$(command {command})"
-        if function.endswith("LaunchDescriptionSource"):
-            return "".join(map(part, self._split_pieces(first)))
-        return None
-
-    def _is_configurations(self, node: ast.expr) -> bool:
-        """Return whether an expression holds the values of all arguments by name, as in ``OpaqueFunction``."""
-        owner = self.python.resolved(node)
-        return isinstance(owner, ast.Attribute) and owner.attr == _CONFIGURATIONS
-
-    def _mark_substitutions(self, node: ast.expr | None) -> str:
-        """Return the mark of a parameter file with substitutions, from the argument that allows them."""
-        node = None if node is None else self.python.resolved(node)
-        if node is None or (isinstance(node, ast.Constant) and not node.value):
-            return ""
-        if isinstance(node, ast.Constant):
-            return f" ({ALLOW_SUBSTITUTIONS})"
-        return f" ({ALLOW_SUBSTITUTIONS} {ast.unparse(node)})"
-
-    def _is_string(self, node: ast.expr) -> bool:
-        """Return whether an expression certainly is a string, such as a sum with a string."""
-        for _ in range(_MAX_DEPTH):
-            node = self.python.resolved(node)
-            if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
-                break
-            if self._is_string_term(self.python.resolved(node.right)):
-                return True
-            node = node.left
-        return self._is_string_term(node)
-
-    def _is_string_term(self, node: ast.expr) -> bool:
-        """Return whether an expression other than a sum is a string, such as the path of a package."""
-        if isinstance(node, ast.Call):
-            return called_name(node).rpartition(".")[2] in _STRING_FUNCTIONS
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mod):
-            node = node.left
-        return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
-
-    def _split_pieces(self, node: ast.expr) -> list[ast.expr]:
-        node = self.python.resolved(node)
-        return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
-
 
 def format_branches(test: ast.expr) -> tuple[str, str]:
     """Return the conditions of both branches of a test."""
@@ -566,29 +473,7 @@ def shorten_text(text: str) -> str:
     return f"{text[:_MAX_CHARACTERS]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
 
 
-def _format_expression(expression: str) -> str:
-    """Return a Python expression as text.
-
-    A quoted text loses its quotes, even if it contains substitutions.
-    """
-    quoted = _QUOTED_STRING.fullmatch(expression)
-    return f"$(eval {expression})" if quoted is None else quoted["text"]
-
-
-def _join_path(parts: Sequence[str]) -> str:
-    """Return the path that ``os.path.join`` makes of its parts."""
-    path = ""
-    for part in parts:
-        separator = "" if not path or path.endswith("/") else "/"
-        path = part if part.startswith("/") else f"{path}{separator}{part}"
-    return path
-
-
-def _get_call_arguments(node: ast.Call) -> list[ast.expr]:
-    return [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg is not None)]
-
-
-def _format_call(node: ast.Call, part: _Formatter) -> str:
+def _format_call(node: ast.Call, part: Formatter) -> str:
     """Return any other call as text: the function unchanged, its arguments with their values."""
     words = [part(argument) for argument in node.args]
     words += [

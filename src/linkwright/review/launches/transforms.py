@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterator
 
 from linkwright.review.caching import cached_in_review
-from linkwright.review.launch_paths import is_launch_file
+from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import IncludedActions, find_including_files
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
@@ -109,6 +109,49 @@ def starts_robot_with_link(frame: str, new: IncludedActions, version: Version) -
         return False
     including = (actions for actions, _ in find_including_files(version, new.path))
     return any(actions.find_node(_ROBOT_PROGRAM) is not None for actions in (new, *including))
+
+
+def gets_transform(
+    program: str, old_frame: str, new_frame: str, old: IncludedActions, new: IncludedActions, version: Version
+) -> bool:
+    """Return whether the data of a node gets a frame with a transform instead of one that never had any.
+
+    A launch file that starts a robot with the old frame counts, unless it starts the node itself and thus replaces this
+    launch file.
+
+    Args:
+        program: the package and the executable of the node.
+        old_frame: the frame of the old version.
+        new_frame: the frame of the new version.
+        old: the actions of the old file with those of its included files.
+        new: the actions of the new file with those of its included files.
+        version: the old version, with its descriptions and launch files.
+    """
+    frames = _list_transform_frames(old), _list_transform_frames(new)
+    names = [frame.strip("/") for frame in (old_frame, new_frame)]
+    entries = [entry for outline in (old.outline, *old.included_outlines) for entry in outline.entries]
+    if names[0] in frames[0] or names[1] not in frames[0] & frames[1]:
+        return False
+    if any(_ANY_FRAME_PROGRAM.match(entry.name) or _is_absent(entry, version) for entry in entries):
+        return False
+    if names[0] not in _list_description_words(version):
+        return True
+    for path in find_launch_files(version):
+        programs = [entry.name for entry in _read_nodes(version, path)]
+        if program not in programs and any(map(_ROBOT_PROGRAM.match, programs)):
+            return False
+    return True
+
+
+def _list_transform_frames(actions: IncludedActions) -> set[str]:
+    """Return the frames of the static transforms of a launch file and its included files."""
+    return {
+        frame.strip("/")
+        for outline in (actions.outline, *actions.included_outlines)
+        for entry in outline.entries
+        if entry.name.startswith(TRANSFORM_PUBLISHERS)
+        for frame in _find_parent_and_child(entry, outline)
+    }
 
 
 def _find_added_robot(frames: Collection[str], versions: Versions) -> Entry | None:
