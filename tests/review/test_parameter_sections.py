@@ -171,3 +171,22 @@ def test_a_list_of_mappings_that_ros_2_cannot_read_is_not_missed(repository, com
     text, *others = sentences(subject(result, PATH))
     assert text.startswith("lists of mappings, which no parameter of ROS 2 can be, became mappings: arm.")
     assert (others, breaking(result)) == (expected, [])
+
+
+def test_parameters_below_a_second_section_have_no_effect(repository, compare):
+    path, start = "arm/config/controllers.yaml", "controller_manager:\n  ros__parameters:\n    update_rate: 100\n"
+    repository.commit({path: start})
+    repository.write({path: f"{start}    arm:\n      ros__parameters:\n        joints: [left, right]\n"})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert reasons == ["no node gets parameters below a second 'ros__parameters'"]
+
+
+def test_an_added_list_of_mappings_is_shown_with_its_items(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    items = "".join(f"- module: {name}\n  args:\n    topic: /{name}\n    rate: 10\n" for name in ("map", "camera"))
+    repository.write({"arm/config/topics.yaml": items})
+    (review_subject,) = compare(repository).subjects
+    (line,) = sentences(review_subject)
+    assert line.startswith("parameter file added: ")
+    assert "/map" in line
+    assert "/camera" in line
