@@ -78,3 +78,16 @@ def test_undefined_name_behind_a_new_condition_breaks_no_old_call(
     (line,) = [line for item in result.subjects for line in sentences(item) if "which nothing defines" in line]
     assert line.startswith("macro 'gripper': uses 'rate', which nothing defines")
     assert (line in breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize("default", ["false", "true"])
+def test_a_program_with_a_window_that_no_longer_starts_by_default_is_told(review_changes, default):
+    text = f"""<launch>
+      <arg name="gui" default="true"/><arg name="rviz" default="{default}"/>
+      <node pkg="rviz2" exec="rviz2" if="$(var gui)"/>
+      <node pkg="arm" exec="arm" args="$(var gui)"/>
+    </launch>"""
+    changes, found_breaking = review_changes("arm.launch.xml", text, 'if="$(var gui)"', 'if="$(var rviz)"')
+    end = "; by default, it no longer starts" if default == "false" else ""
+    assert changes[0] == f"node 'rviz2/rviz2': condition if $(var gui) -> if $(var rviz){end}"
+    assert found_breaking == []

@@ -209,3 +209,22 @@ def test_a_renamed_node_with_many_new_parameters_is_compared_value_by_value(repo
     assert "ekf_odom.ros__parameters.frequency 5.0 -> 10.0" in texts
     diagonal = f"15 x 15, diagonal [{', '.join(['0.5'] * 15)}]"
     assert [text for text in texts if text.endswith(f"process_noise_covariance {diagonal} added")]
+
+
+def test_parameters_below_a_second_section_have_no_effect(repository, compare):
+    path, start = "arm/config/controllers.yaml", "controller_manager:\n  ros__parameters:\n    update_rate: 100\n"
+    repository.commit({path: start})
+    repository.write({path: f"{start}    arm:\n      ros__parameters:\n        joints: [left, right]\n"})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert reasons == ["no node gets parameters below a second 'ros__parameters'"]
+
+
+def test_an_added_list_of_mappings_is_shown_with_its_items(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    items = "".join(f"- module: {name}\n  args:\n    topic: /{name}\n    rate: 10\n" for name in ("map", "camera"))
+    repository.write({"arm/config/topics.yaml": items})
+    (review_subject,) = compare(repository).subjects
+    (line,) = sentences(review_subject)
+    assert line.startswith("parameter file added: ")
+    assert "/map" in line
+    assert "/camera" in line

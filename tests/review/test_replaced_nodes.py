@@ -126,3 +126,12 @@ def test_transforms_of_a_removed_bridge_are_those_of_the_simulator(repository, c
     repository.write({path: bridge.format("a", "b")})
     (change,) = subject(compare(repository), path).changes
     assert str(change.reason) == "the transforms of the simulator are no longer on '/tf'"
+
+
+def test_the_spawn_command_of_the_controller_manager_of_ros_1_starts_controllers(review_changes):
+    node = '<node pkg="controller_manager" type="controller_manager" name="spawner" args="spawn left right"/>'
+    text = f"<launch>{node}</launch>"
+    changes, found_breaking = review_changes("arm.launch", text, "spawn left right", "spawn left")
+    assert found_breaking == changes
+    (change,) = changes
+    assert change.startswith("node 'controller_manager/controller_manager' of 'left'")

@@ -59,6 +59,8 @@ _MAX_VALUES = 32
 _NEUTRAL_VALUE = re.compile(r" (?:[-+]?0*\.?0*(?:e[-+]?\d+)?|''|\[\]|\{\}|null|~)$")
 """A value of zero, or none. Recorded messages have many of them, which say less than the others."""
 _MIN_VALUES_OF_PART = 3
+_ITEM = re.compile(r"\[[^\[\]]+\](?=\.)")
+"""The beginning of the path of a value in an item of a list at the root."""
 _ROUNDING = 1e-9
 """The relative difference up to which two numbers differ only by rounding."""
 _MAX_VALUE_CHARACTERS = 60
@@ -115,6 +117,8 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     if bridges:
         return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], MAX_NAMES))
     root = _compose_root(text)
+    if isinstance(root, yaml.SequenceNode):
+        return _format_list(root)
     if not isinstance(root, yaml.MappingNode):
         return None
     values = collect_values(root, {})
@@ -128,6 +132,17 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     names = [str(key.value) for key, _ in root.value]
     keys = {key: {name: value for name, value in values.items() if _is_below(name, key)} for key in names}
     return _format_values(keys) if keys else None
+
+
+def _format_list(root: yaml.SequenceNode) -> Phrase | None:
+    """Return the items of a list of mappings with their first values, or None for another list."""
+    items: dict[str, dict[str, YamlValue]] = {}
+    for name, value in collect_values(root, {}).items():
+        match = _ITEM.match(name)
+        if match is None:
+            return None
+        items.setdefault(match[0], {})[name] = value
+    return _format_values(items) if items else None
 
 
 def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:

@@ -57,6 +57,7 @@ _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|control
 _ROS1_CLASS = re.compile(r"\w+/\w+")
 """The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
+_PARAMETERS_KEY = "ros__parameters"
 _MOTION = re.compile(r"(?:.*[./])?play_motion2?(?:_node)?\.(?:ros__parameters\.)?motions\.(?P<name>[\w-]+)\.")
 """The beginning of the parameters of a motion of play_motion, whose name clients send."""
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
@@ -167,6 +168,8 @@ class NameRules:
 
     def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
         """Return the reason why adding a parameter is breaking, or None if it is not. A new node is not breaking."""
+        if _is_nested(parameter) and not any(map(_is_nested, self._old)):
+            return phrase("no node gets parameters below a second '{name}'", name=_PARAMETERS_KEY)
         if parameter.endswith(f".{_UNSTAMPED_BY_DEFAULT}") and value.lower() == "true":
             node = find_node_name(parameter)
             if node is not None and node not in self._added_nodes:
@@ -387,6 +390,11 @@ def find_all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
 def _find_name_items(text: str) -> set[str]:
     """Return the items of a list or the value itself, without numbers and booleans."""
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_BOOLEAN.fullmatch(item)}
+
+
+def _is_nested(parameter: str) -> bool:
+    """Return whether a parameter is inside of two nested sections with parameters."""
+    return parameter.split(".").count(_PARAMETERS_KEY) > 1
 
 
 def _make_lost_parameters_reason(node: str) -> Phrase:

@@ -61,7 +61,8 @@ def split_remappings(value: BoundExpression) -> dict[str, str]:
 
 def _join_substitutions(name: str) -> str:
     """Return a name without the notation of a list, whose texts and substitutions launch joins."""
-    items = nested_list_items(name) if name.startswith("[") and name.endswith("]") else []
+    is_list = name.startswith("[") and name.endswith("]") and "][" not in name  # not an item of a list
+    items = nested_list_items(name) if is_list else []
     return "".join(items) if items and not any(" " in item and "$(" not in item for item in items) else name
 
 

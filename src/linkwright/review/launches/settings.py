@@ -13,6 +13,7 @@ from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_m
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
+from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.fixed_arguments import fix_value
@@ -233,8 +234,18 @@ class SettingChanges:
             settings.remove(setting)
             self._collect(new, *setting.describe_opposite_change())
         for text, reason, name in _group_settings(settings, is_include=new.kind == "include"):
+            if name == CONDITION and reason is None and self._stops_by_default(old, new):
+                text = phrase("{change}; by default, it no longer starts", change=text)
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._collect(new, text, reason, separates_reasons=name != CONDITION)
+
+    def _stops_by_default(self, old: Entry, new: Entry) -> bool:
+        """Return whether an action starts by default in the old version only."""
+        conditions = ((self._old, old), (self._new, new))
+        results = [
+            evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) for outline, entry in conditions
+        ]
+        return results == [True, False] and new.kind in ("node", "include", "process")
 
     def _find_defaults(self, entry: Entry, pair: SettingPair) -> tuple[str, str] | None:
         """Return both values of a setting with the defaults of arguments, if only one version uses arguments."""
