@@ -96,7 +96,8 @@ def test_a_finding_in_a_macro_is_not_new_if_another_robot_calls_it_with_a_prefix
     folder = "arm_description/urdf"
     repository.commit({"arm_description/package.xml": PACKAGE_XML, f"{folder}/side.xacro": PREFIXED})
     repository.commit({f"{folder}/arm.urdf.xacro": CALLER.format(old)})
-    repository.write({f"{folder}/a.urdf.xacro": CALLER.format("left_")})
+    changed = CALLER.format(old).replace('name="base"', 'name="base" type="a"')
+    repository.write({f"{folder}/a.urdf.xacro": CALLER.format("left_"), f"{folder}/arm.urdf.xacro": changed})
     codes = finding_codes(compare(repository).new_findings)
     assert ("LW222" in codes) == is_new
 

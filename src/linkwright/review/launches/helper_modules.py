@@ -10,7 +10,9 @@ from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.file_pair import FilePair
 from linkwright.review.installed_paths import find_module
 from linkwright.review.launches.files import compare_launch_files
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.details import compare_details
+from linkwright.review.sources.names import NameKind
+from linkwright.review.sources.reading import read_source_names, try_read_source
 
 _Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
@@ -35,6 +37,18 @@ def compare_launch_helpers(pair: FilePair) -> None:
         if len(renamed) == 1:
             text = phrase("'{old}' renamed to '{new}'", old=node.name, new=renamed[0])
         pair.add(text, pair.location(old.span(node), is_old=True), phrase("launch files that import it do not find it"))
+    _compare_functions(pair)
+
+
+def _compare_functions(pair: FilePair) -> None:
+    """Report the functions and classes of a module that take other arguments or return another number of values."""
+    old_names, new_names = read_source_names(pair.old_file), read_source_names(pair.new_file)
+    for kind in (NameKind.FUNCTION, NameKind.CLASS):
+        before = {item.name: item for item in old_names.of_kind(kind)}
+        for item in new_names.of_kind(kind):
+            changes = compare_details(before[item.name], item) if item.name in before else ()
+            for text, reason, _ in changes:
+                pair.add(text, pair.location(item.span), reason)
 
 
 def _try_parse(path: Path) -> PythonFile | None:

@@ -17,7 +17,7 @@ from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, find_failing_calls, read_classes
 from linkwright.review.sources.reading import is_generated, try_read_source
-from linkwright.review.sources.signatures import Signature, read_signature
+from linkwright.review.sources.signatures import Signature, count_returned, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -34,12 +34,14 @@ class _Module:
         defined: the names of its functions and classes.
         signatures: the parameters of these functions and classes, if these are certain.
         is_complete: whether the module certainly has no other names.
+        counts: the numbers of values that functions return, if these are certain.
     """
 
     names: frozenset[str]
     defined: frozenset[str]
     signatures: Mapping[str, Signature]
     is_complete: bool
+    counts: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -51,12 +53,14 @@ class _LostNames:
         removed: the names of the removed functions and classes.
         changed: the old and new parameters of changed functions and classes.
         is_removed: whether the whole module was removed.
+        counts: the old and new numbers of values that changed functions return.
     """
 
     path: str
     removed: frozenset[str] = frozenset()
     changed: Mapping[str, tuple[Signature, Signature]] = field(default_factory=dict)
     is_removed: bool = False
+    counts: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
 
 def find_broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -134,7 +138,9 @@ def _find_lost(versions: Versions, file: ChangedFile) -> _LostNames | None:
     common = old.signatures.keys() & new.signatures.keys()
     changed = {name: (old.signatures[name], new.signatures[name]) for name in common}
     changed = {name: pair for name, pair in changed.items() if pair[0].text != pair[1].text}
-    return _LostNames(path, removed, changed) if removed or changed else None
+    counts = {name: (count, new.counts[name]) for name, count in old.counts.items() if name in new.counts}
+    counts = {name: pair for name, pair in counts.items() if pair[0] != pair[1]}
+    return _LostNames(path, removed, changed, counts=counts) if removed or changed or counts else None
 
 
 def _get_module_word(path: str) -> str:
@@ -143,7 +149,7 @@ def _get_module_word(path: str) -> str:
 
 
 def _mentions_any(lost: _LostNames, text: str) -> bool:
-    return lost.is_removed or any(name in text for name in (*lost.removed, *lost.changed))
+    return lost.is_removed or any(name in text for name in (*lost.removed, *lost.changed, *lost.counts))
 
 
 def _parse(version: Version, path: str) -> ast.Module | None:
@@ -167,7 +173,12 @@ def _read_module(version: Version, path: str) -> _Module | None:
         isinstance(node, ast.Name) and node.id in ("globals", "exec") for node in ast.walk(tree)
     )
     signatures = {name: signature for name, signature in pairs if signature is not None}
-    return _Module(frozenset(bound), frozenset(node.name for node in definitions), signatures, not is_dynamic)
+    counts = {
+        node.name: count
+        for node in definitions
+        if isinstance(node, ast.FunctionDef) and node.name in signatures and (count := count_returned(node)) is not None
+    }
+    return _Module(frozenset(bound), frozenset(node.name for node in definitions), signatures, not is_dynamic, counts)
 
 
 class _PythonFiles:
@@ -276,7 +287,7 @@ class _Caller:
             modules.add(local)
         elif alias.name in self._lost.removed:
             yield from self._report_import(node, alias.name)
-        elif alias.name in self._lost.changed and self._bound_names.count(local) == 1:
+        elif alias.name in {**self._lost.changed, **self._lost.counts} and self._bound_names.count(local) == 1:
             functions[local] = alias.name
 
     def _report_import(self, node: ast.stmt, name: str | None) -> Iterator[Change]:
@@ -289,14 +300,12 @@ class _Caller:
         yield self._make_change(text, phrase("the import fails"), node)
 
     def _check_calls(self, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
-        """Yield the calls that fit only the old parameters, and the calls of removed functions."""
+        """Yield the calls that fit only the old parameters or results, and the calls of removed functions."""
         for node in ast.walk(self._tree):
-            if not isinstance(node, ast.Call):
-                continue
-            name = functions.get(node.func.id) if isinstance(node.func, ast.Name) else None
-            if isinstance(node.func, ast.Attribute) and self._is_module(node.func.value, modules):
-                name = node.func.attr
-            if name is None:
+            if isinstance(node, ast.Assign):
+                yield from self._check_unpacking(node, functions, modules)
+            name = self._find_function(node, functions, modules)
+            if name is None or not isinstance(node, ast.Call):
                 continue
             if name in self._lost.removed and id(node) not in self._guarded_ids:
                 text = phrase("calls '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
@@ -311,6 +320,31 @@ class _Caller:
                         arguments=new.text,
                     )
                     yield self._make_change(text, phrase("the call fails"), node)
+
+    def _check_unpacking(self, node: ast.Assign, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
+        """Yield a change if a statement unpacks the old number of values that a function returns."""
+        name = self._find_function(node.value, functions, modules)
+        target = node.targets[0]
+        if name is None or name not in self._lost.counts or not isinstance(target, (ast.Tuple, ast.List)):
+            return
+        old, new = self._lost.counts[name]
+        if len(target.elts) == old and not any(isinstance(item, ast.Starred) for item in target.elts):
+            text = phrase(
+                "unpacks {old} values of '{name}' of '{file}', which returns {new} now",
+                old=old,
+                name=name,
+                file=self._lost.path,
+                new=new,
+            )
+            yield self._make_change(text, phrase("the statement fails"), node)
+
+    def _find_function(self, node: ast.AST, functions: Mapping[str, str], modules: set[str]) -> str | None:
+        """Return the name of the function of the module that a call runs, or None."""
+        if not isinstance(node, ast.Call):
+            return None
+        if isinstance(node.func, ast.Attribute) and self._is_module(node.func.value, modules):
+            return node.func.attr
+        return functions.get(node.func.id) if isinstance(node.func, ast.Name) else None
 
     def _is_module(self, node: ast.expr, modules: set[str]) -> bool:
         text = ast.unparse(node) if isinstance(node, (ast.Name, ast.Attribute)) else ""

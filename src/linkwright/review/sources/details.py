@@ -17,7 +17,7 @@ from linkwright.review.sources.signatures import NOTHING, parse_signature
 
 _KNOWN_IN_BOTH = (
     *(Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.RETURNED),
-    *(Detail.BASES, Detail.CREATED_IN),
+    *(Detail.RETURNED_COUNT, Detail.BASES, Detail.CREATED_IN),
 )
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
@@ -260,6 +260,8 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return None if can_use_result(old, new) else reason
     if detail is Detail.RETURNED:
         return phrase("programs that use the result get None")
+    if detail is Detail.RETURNED_COUNT:
+        return phrase("programs that unpack {count} values fail", count=old)
     if detail is Detail.BASES:
         lost = sorted(set(old.split(", ")) - set(new.split(", ")))
         reason = phrase("programs that load the class as '{type}' do not find it", type=", ".join(lost))

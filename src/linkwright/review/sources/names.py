@@ -86,6 +86,7 @@ class Detail(Enum):
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
     RETURNED = phrase("returned value")
+    RETURNED_COUNT = phrase("number of returned values")
     CONSTANT = phrase("const")
     BASES = phrase("base classes")
     CREATED_IN = phrase("created in")

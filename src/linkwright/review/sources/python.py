@@ -32,6 +32,7 @@ from linkwright.review.sources.python_wrappers import CREATING_METHODS, WrapperC
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.signatures import (
     Signature,
+    count_returned,
     find_argument_default,
     find_returned,
     ignores_keywords,
@@ -164,9 +165,12 @@ def _format_expression(python: PythonFile, node: ast.expr | None) -> str:
 
 def _list_details(definition: ast.FunctionDef | ast.ClassDef, signature: Signature) -> tuple[tuple[Detail, str], ...]:
     """Return the parameters of a function or class, and the result of a function if it is certain."""
-    returned = find_returned(definition) if isinstance(definition, ast.FunctionDef) else None
-    details = ((Detail.ARGUMENTS, signature.text),)
-    return details if returned is None else (*details, (Detail.RETURNED, returned))
+    details = [(Detail.ARGUMENTS, signature.text)]
+    if isinstance(definition, ast.FunctionDef):
+        returned, count = find_returned(definition), count_returned(definition)
+        details += [] if returned is None else [(Detail.RETURNED, returned)]
+        details += [] if count is None else [(Detail.RETURNED_COUNT, str(count))]
+    return tuple(details)
 
 
 def _has_uncertain_arguments(call: ast.Call) -> bool:

@@ -184,6 +184,20 @@ def find_returned(function: ast.FunctionDef) -> str | None:
     return ast.unparse(certain[0]) if certain else None
 
 
+def count_returned(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int | None:
+    """Return the number of values that each ``return`` of a function lists, or None if it is uncertain."""
+    nodes = list(_walk_function(function))
+    values = [node.value for node in nodes if isinstance(node, ast.Return)]
+    counts = {
+        len(value.elts)
+        if isinstance(value, ast.Tuple) and not any(isinstance(item, ast.Starred) for item in value.elts)
+        else None
+        for value in values
+    }
+    is_generator = any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in nodes)
+    return counts.pop() if len(counts) == 1 and not is_generator and not function.decorator_list else None
+
+
 def _is_pattern(function: ast.FunctionDef) -> bool:
     """Return whether a function has no code, or ends with an error."""
     body = function.body[ast.get_docstring(function) is not None :]
@@ -191,7 +205,7 @@ def _is_pattern(function: ast.FunctionDef) -> bool:
     return is_empty or isinstance(body[-1], ast.Raise)
 
 
-def _walk_function(function: ast.FunctionDef) -> Iterator[ast.AST]:
+def _walk_function(function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[ast.AST]:
     """Yield the nodes in the body of a function without those of inner functions and classes."""
     stack: list[ast.AST] = list(function.body)
     while stack:
