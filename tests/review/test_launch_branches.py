@@ -68,3 +68,58 @@ def test_actions_outside_of_an_if_statement_have_no_condition(review_changes, li
     found, breaking = review_changes("arm.launch.py", old, old, new)
     assert not [sentence for sentence in found if "arm/driver" in sentence]
     assert not breaking
+
+
+CAMERA = "Node(package='arm', executable='camera', output='screen')"
+
+
+def make_branches(first: str, second: str, test: str = CHECK) -> str:
+    return launch_text(f"if {test}:", f"    actions += [driver, {first}]", "else:", f"    actions += [{second}]")
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        (make_branches(CAMERA, CAMERA), [f"node 'arm/driver' added: if `{CHECK}`"]),
+        (make_branches(CAMERA, CAMERA.replace("screen", "log")),
+         [f"node 'arm/camera': condition if `{CHECK}` added", f"node 'arm/driver' added: if `{CHECK}`",
+          f"node 'arm/camera' added: unless `{CHECK}`, output log"]),
+        (launch_text(f"if {CHECK}:", "    actions += [driver]", f"if ready():\n        actions += [{CAMERA}]"),
+         ["node 'arm/camera': condition if `ready()` added", f"node 'arm/driver' added: if `{CHECK}`"]),
+    ],
+)  # fmt: skip
+def test_equal_actions_of_both_branches_have_no_condition(review_changes, new, expected):
+    old = launch_text(f"actions += [{CAMERA}]")
+    found, _ = review_changes("arm.launch.py", old, old, new)
+    assert sorted(found) == sorted(expected)
+
+
+CALLING = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from launch_ros.actions import Node
+
+
+def start(context):
+    EXTRA
+    return [Node(package="arm", executable="driver")]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=start)])
+"""
+PLAIN = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="arm", executable="driver")])
+"""
+
+
+@pytest.mark.parametrize(
+    ("extra", "expected"),
+    [("", []), ("print('ready')", ["other code added: print('ready')"])],
+)
+def test_function_of_an_action_is_compared_by_its_contents(review_changes, extra, expected):
+    found, _ = review_changes("arm.launch.py", PLAIN, PLAIN, CALLING.replace("EXTRA", extra))
+    assert found == expected

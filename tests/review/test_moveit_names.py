@@ -170,3 +170,26 @@ def test_settings_of_a_lost_group_break_nothing_more(repository, compare, old, n
     repository.write({PATH: text.replace(old, new), "a/config/a.srdf": SEMANTICS.format("foot" if is_lost else "leg")})
     lost = [change for change in subject(compare(repository), PATH).changes if change.reason is not None]
     assert bool(lost) != is_lost
+
+
+TYPE = "joint_trajectory_controller/JointTrajectoryController"
+CONTROLLERS = f"controller_manager: {{{{ros__parameters: {{{{{{name}}: {{{{type: {TYPE}}}}}}}}}}}}}"
+WRIST, HAND = CONTROLLERS.format(name="wrist"), CONTROLLERS.format(name="hand")
+
+
+@pytest.mark.parametrize(
+    ("others", "is_breaking"),
+    [
+        ({"a/config/c.yaml": HAND}, False),
+        ({"a/config/c.yaml": WRIST}, True),
+        ({"a/config/c.yaml": WRIST, "a/config/d.yaml": HAND}, True),
+        ({}, True),
+    ],
+)  # fmt: skip
+def test_controllers_of_moveit_that_follow_the_configured_ones(repository, compare, others, is_breaking):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: SETTINGS, **others})
+    repository.write({PATH: SETTINGS.replace("[wrist]", "[hand]")})
+    result = compare(repository)
+    text = "manager.controller_names [wrist] -> [hand]"
+    assert text in sentences(subject(result, PATH))
+    assert (text in breaking(result)) is is_breaking

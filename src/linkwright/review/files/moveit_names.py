@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import joint_name_reason
+from linkwright.review.caching import cached_in_review
+from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.lost_plan_groups import is_of_lost_group
-from linkwright.review.files.parameter_names import can_evaluate_to, list_part_paths, make_controller_reason
-from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.files.parameter_names import (
+    can_evaluate_to,
+    find_all_controllers,
+    list_part_paths,
+    make_controller_reason,
+)
+from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.joint_limits import LOWER, UPPER, find_narrower_reason
 from linkwright.review.list_changes import list_items
-from linkwright.review.versions import Versions
+from linkwright.review.versions import Version, Versions
 
 _CONTROLLER = re.compile(r"(?:.*[._])?controller_list\[(?!(?:old )?\d+\])(?P<name>[^\]]+)\]")
 """The path of a controller in a list of mappings."""
@@ -34,6 +41,9 @@ _SOLVER = re.compile(r"(?:.*\.)?(?P<name>[^.\[]+)\.kinematics_solver")
 _ACTION_NAMESPACE = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
 """The path of the namespace of the action that MoveIt calls."""
 
+_COMMANDED_CONTROLLERS = re.compile(r"(?:.*[._])?controller_names")
+"""The path of the list of the controllers that MoveIt commands. Other programs load them."""
+_YAML_SUFFIXES = (".yaml", ".yml")
 _SEMANTIC_SUFFIXES = (".srdf", ".srdf.xacro")
 _WORD = re.compile(r"[\w./-]+")
 
@@ -111,6 +121,17 @@ class MoveItRules:
             joint_name_reason(joint["name"]) if has_limits and self._is_removed(_LIMITED_JOINT, joint["name"]) else None
         )
 
+    def follows_controllers(self, parameter: str, old: YamlValue, new: YamlValue) -> bool:
+        """Return whether a list of the controllers that MoveIt commands follows those of the repository.
+
+        The parameter files configure all the added ones, and none of the removed ones.
+        """
+        if _COMMANDED_CONTROLLERS.fullmatch(parameter) is None:
+            return False
+        before, after = ({name.strip("/") for name in list_items(value.text)} for value in (old, new))
+        configured = _list_configured_controllers(self._version)
+        return bool(after - before) and after - before <= configured and configured.isdisjoint(before - after)
+
     def _find_controller_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
         """Return the reason why another action, or a lost joint, of a controller is breaking; None if it is not."""
         match = _CONTROLLER_VALUE.fullmatch(parameter)
@@ -148,6 +169,20 @@ class MoveItRules:
         """
         names = self._names[pattern]
         return bool(names) and name not in names and not any(can_evaluate_to(new_name, name) for new_name in names)
+
+
+@cached_in_review(maxsize=4)
+def _list_configured_controllers(version: Version) -> frozenset[str]:
+    """Return the names of the controllers whose types the parameter files of a version set."""
+    return frozenset(name for path in version.paths(_YAML_SUFFIXES) for name in _read_controllers(version, path))
+
+
+def _read_controllers(version: Version, path: str) -> Iterator[str]:
+    text = version.text(path)
+    try:
+        yield from find_all_controllers(read_yaml_values(text)) if "type:" in text else ()
+    except UnreadableFileError:
+        return
 
 
 def _find_position_reason(parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:

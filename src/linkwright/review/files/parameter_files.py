@@ -227,9 +227,9 @@ def _compare_values(
         ):
             location = Location(pair.new_path, value.line, value.column)
             value_texts = _format_value_pair(old_value, value)
-            reason = moveit.find_change_reason(name, old_value, value) or rules.find_change_reason(
-                name, old_value, value
-            )
+            reason = moveit.find_change_reason(name, old_value, value)
+            if reason is None and not moveit.follows_controllers(name, old_value, value):
+                reason = rules.find_change_reason(name, old_value, value)
             reason = reason or readers.find_name_reason(name, old_value, value)
             reason = reason or plugins.find_change_reason(name, old_value, value)
             reason = reason or find_name_reason(name, old_value, value)

@@ -26,10 +26,15 @@ def evaluate_condition(condition: str) -> bool | None:
         condition: conditions such as ``if true and unless $(eval 'a' == 'b')``, with values in place of variables.
             Empty if there is none.
     """
-    results = [_evaluate_part(part) for part in _SEPARATOR.split(condition) if part]
+    results = [_evaluate_part(part) for part in split_condition(condition)]
     if False in results:
         return False
     return None if None in results else True
+
+
+def split_condition(condition: str) -> list[str]:
+    """Return the terms of a condition, all of which must hold."""
+    return [part for part in _SEPARATOR.split(condition) if part]
 
 
 def _evaluate_part(part: str) -> bool | None:

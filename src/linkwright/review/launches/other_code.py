@@ -16,6 +16,7 @@ _COMBINING_CALLS = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
 )
 """The calls that only combine actions."""
+_CALLING_CLASS = "OpaqueFunction"
 _LIST_METHODS = ("append", "extend")
 """The methods that add actions to lists."""
 _ACTION_ARGUMENTS = ("actions", "composable_node_descriptions", None)
@@ -121,6 +122,15 @@ def _find_owner_names(python: PythonFile, node: ast.expr) -> Iterator[str]:
         node = python.resolved(node.value)
 
 
+def _find_called_function(call: ast.Call) -> str | None:
+    """Return the function that an action calls to make others, or None if it gets more than the context."""
+    if called_name(call).rpartition(".")[2] != _CALLING_CLASS:
+        return None
+    values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg == "function")]
+    is_only = len(values) == 1 == len(call.args) + len(call.keywords)
+    return values[0].id if is_only and isinstance(values[0], ast.Name) else None
+
+
 class _CodeNormalizer:
     """A formatter of code in comparable form.
 
@@ -141,6 +151,8 @@ class _CodeNormalizer:
         }
         self._branches = branches
         self._covered = covered
+        names = (_find_called_function(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call))
+        self._called_functions = {name for name in names if name is not None}
         self._texts: dict[int, str] = {}
 
     def format_node(self, node: ast.AST) -> str:
@@ -155,11 +167,14 @@ class _CodeNormalizer:
         """Return a statement without its body in comparable form; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODY_FIELDS):
             return self.format_node(node)
-        return "" if id(node) in self._branches else self._format_fields(node)
+        is_read = isinstance(node, ast.FunctionDef) and node.name in self._called_functions and not node.decorator_list
+        return "" if id(node) in self._branches or is_read else self._format_fields(node)
 
     def _normalize(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
+        if isinstance(node, ast.Call) and _find_called_function(node) is not None:
+            return ""  # its actions are compared
         if isinstance(node, ast.Expr):
             return "" if isinstance(node.value, ast.Constant) else self.format_node(node.value)
         if isinstance(node, ast.Name):

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Span
-from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.conditions import evaluate_condition, split_condition
 from linkwright.review.launches.evaluations import replace_names_in_evaluations
 
 TEST = "test"
@@ -363,3 +363,37 @@ def _join_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
     for name in text.split(_NAMESPACE_SEPARATOR):
         joined = name if not joined or outline.resolve(name).startswith("/") else f"{joined}/{name}"
     return joined
+
+
+def merge_branches(entries: Sequence[Entry]) -> list[Entry]:
+    """Return the actions of a Python file, with equal actions of both branches of a test as one without the test."""
+    merged: list[Entry] = []
+    for entry in entries:
+        terms = split_condition(entry.settings.get(CONDITION, ""))
+        for index, other in enumerate(merged):
+            if (entry.kind, entry.name) != (other.kind, other.name) or not _are_equal_except_condition(entry, other):
+                continue
+            other_terms = split_condition(other.settings.get(CONDITION, ""))
+            common = [term for term in terms if term in other_terms]
+            tests = [term for term in (*terms, *other_terms) if term not in common]
+            if len(terms) == len(other_terms) == len(common) + 1 and _are_opposite(*tests):
+                settings = {name: value for name, value in other.settings.items() if name != CONDITION}
+                condition = {CONDITION: " and ".join(common)} if common else {}
+                merged[index] = replace(other, settings=settings | condition)
+                break
+        else:
+            merged.append(entry)
+    return merged
+
+
+def _are_equal_except_condition(first: Entry, second: Entry) -> bool:
+    settings = [
+        {name: value for name, value in entry.settings.items() if name != CONDITION} for entry in (first, second)
+    ]
+    return settings[0] == settings[1] and (first.namespaces, first.groups) == (second.namespaces, second.groups)
+
+
+def _are_opposite(first: str, second: str) -> bool:
+    """Return whether two conditions are those of the branches of one test of Python."""
+    words, tests = zip(*(term.split(" ", 1) for term in (first, second)), strict=True)
+    return set(words) == {"if", "unless"} and tests[0] == tests[1] and tests[0].startswith("`")

@@ -19,6 +19,7 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
     Scope,
+    merge_branches,
 )
 from linkwright.review.launches.python_actions import ACTIONS, ActionReader
 from linkwright.review.launches.python_syntax import (
@@ -54,7 +55,7 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader = _Reader(python, helpers, texts)
     reader.visit(python.tree)
     variables = find_set_variables(python, texts)
-    entries = [*reader.read_entries(), *variables.values()]
+    entries = [*merge_branches(list(reader.read_entries())), *variables.values()]
     entries.sort(key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | variables.keys() | _find_covered_literals(python, helpers, reader.evaluated)
     code = read_other_code(python, covered, reader.branches, texts)
