@@ -8,7 +8,7 @@ from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking
 
 MESSAGES = PACKAGE_XML.replace("arm_description", "arm_msgs")
-ROS1 = MESSAGES.replace("ament_cmake", "catkin")
+ROS1 = MESSAGES.replace("</package>", "<buildtool_depend>catkin</buildtool_depend></package>")
 HEADER = "arm/include/arm/node.h"
 USE = "bool load(arm_msgs::LoadTool::Request& request);\n"
 USE_2 = "void load(const arm_msgs::srv::LoadTool::Request& request);\n"
