@@ -222,7 +222,8 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("if cost >= 253 and self.mode", "if cost > 254 and self.mode", "values in Rover.drive: 253 -> 254"),
+        ("if cost >= 253 and self.mode", "if cost > 254 and self.mode",
+         "values in Rover.drive: cost >= 253 -> cost > 254"),
         ("z_offset=0.30, name", "z_offset=0.35, side=True, name", "values in Rover.drive: 0.30 -> 0.35"),
         ("z_offset=0.30, name='drill'", "z_offset=0.35, size=4, name='drill'",
          ("in 'Rover.drive()': `arm.add_tool(z_offset=0.3, name='drill')` -> "

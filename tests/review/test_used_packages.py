@@ -103,3 +103,13 @@ def test_sources_of_a_new_package_use_no_new_packages(repository, compare):
     )
     found = [sentence for item in compare(repository).subjects for sentence in sentences(item)]
     assert not any("first time" in sentence for sentence in found)
+
+
+@pytest.mark.parametrize(("name", "is_told"), [("nav_msgs", False), ("bag_tools", True)])
+def test_package_of_messages_that_sources_in_cpp_include_is_not_new_in_python(repository, compare, name, is_told):
+    manifest = MANIFEST["arm/package.xml"].replace("</package>", f"<depend>{name}</depend></package>")
+    sources = {"arm/src/a.cpp": make_source(f"{name}/writer.h"), "arm/scripts/b.py": "import rospy\n"}
+    files = {"arm/package.xml": manifest, **sources}
+    new = {"arm/scripts/b.py": f"import rospy\nfrom {name}.msg import Path\n"}
+    found = find_sentences(repository, compare, files, new)
+    assert (f"packages imported for the first time: '{name}'" in found) == is_told

@@ -42,6 +42,7 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.parameters_between_nodes import find_parameter_moves
 from linkwright.review.files.placeholders import find_renamed_placeholder, rename_placeholder
 from linkwright.review.files.plugin_packages import PluginPackages
+from linkwright.review.files.rearranged_nodes import arrange_like
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.renamed_values import join_renamed_values
 from linkwright.review.files.replaced_classes import join_replaced_classes
@@ -101,6 +102,10 @@ def compare_parameter_files(
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
+        old, rearrangements = arrange_like(old, new)
+        for text, node in rearrangements:
+            location = Location(pair.new_path, node.start_mark.line + 1, node.start_mark.column + 1)
+            pair.changes.append(Change(text, location=location))
     changes, renamed_values = join_renamed_values(
         join_replaced_classes(_find_changes(pair, old, new, read_names, find_remappings))
     )

@@ -80,7 +80,7 @@ def _match_items(
 
 def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, str]) -> Iterator[tuple[int, int]]:
     """Yield the indexes of matched items: the smallest edit, or for long lists a small one."""
-    old_texts, new_texts = ([_format_content(item, texts) for item in items] for items in (old, new))
+    old_texts, new_texts = ([format_content(item, texts) for item in items] for items in (old, new))
     anchors: list[tuple[int, int]] = []
     if len(old) * len(new) <= _MAX_SIMILARITIES:
         anchors = _find_best_pairs(list(map(_count_values, old)), list(map(_count_values, new)))
@@ -146,7 +146,7 @@ def _walk_values(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
     elif isinstance(node, yaml.SequenceNode):
         children = [(str(number), value) for number, value in enumerate(node.value)]
     if not children or depth >= _MAX_DEPTH:
-        yield f"{path}={_format_content(node, {})}"
+        yield f"{path}={format_content(node, {})}"
         return
     for key, value in children:
         yield from _walk_values(value, f"{path}.{key}", depth + 1)
@@ -157,14 +157,14 @@ def _compute_similarity(old: Counter[str], new: Counter[str]) -> float:
     return 2 * (old & new).total() / total if total else 1.0
 
 
-def _format_content(node: yaml.Node, texts: dict[int, str]) -> str:
+def format_content(node: yaml.Node, texts: dict[int, str]) -> str:
     """Return the content of a node as text, which is equal for equal content."""
     if id(node) not in texts:
         if isinstance(node, yaml.MappingNode):
-            items = sorted(f"{key.value}: {_format_content(value, texts)}" for key, value in node.value)
+            items = sorted(f"{key.value}: {format_content(value, texts)}" for key, value in node.value)
             texts[id(node)] = f"{{{', '.join(items)}}}"
         elif isinstance(node, yaml.SequenceNode):
-            texts[id(node)] = f"[{', '.join(_format_content(item, texts) for item in node.value)}]"
+            texts[id(node)] = f"[{', '.join(format_content(item, texts) for item in node.value)}]"
         else:
             texts[id(node)] = str(node.value)
     return texts[id(node)]

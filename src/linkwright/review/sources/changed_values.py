@@ -13,7 +13,7 @@ from linkwright.review.sources.argument_changes import find_argument_difference
 from linkwright.review.sources.call_pairs import pair_by_call
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
-from linkwright.review.sources.operator_changes import find_operator_change
+from linkwright.review.sources.operator_changes import describe_operator, find_operator_change
 from linkwright.review.sources.python_statements import read_python_statements
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.statements import (
@@ -195,6 +195,13 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
     ((before, after),) = pairs
     if not any(_are_in_same_place(old.tokens, new.tokens, *pair) for pair in pairs):
         return
+    operators = _find_index(old.tokens, before) - 1, _find_index(new.tokens, after) - 1
+    compared = {
+        statement.tokens[index].text for statement, index in zip((old, new), operators, strict=True) if index >= 0
+    }
+    if len(compared) > 1 and compared <= _COMPARISONS:
+        yield describe_operator(old, new, operators)  # the numbers alone do not show the condition
+        return
     old_words, new_words = (
         [token.text for token in statement.tokens if token.kind is not TokenKind.NUMBER] for statement in (old, new)
     )
@@ -227,9 +234,14 @@ def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, 
     """Return whether two numbers follow the same token or comparison, so that one can replace the other."""
     places = []
     for tokens, text in ((old, before), (new, after)):
-        index = next(index for index, token in enumerate(tokens) if token.text == text)
+        index = _find_index(tokens, text)
         places.append(tokens[index - 1].text if index else "")
     return places[0] == places[1] or _COMPARISONS.issuperset(places)
+
+
+def _find_index(tokens: Sequence[Token], text: str) -> int:
+    """Return the index of the first token with a text."""
+    return next(index for index, token in enumerate(tokens) if token.text == text)
 
 
 def _is_same_number(old: str, new: str) -> bool:

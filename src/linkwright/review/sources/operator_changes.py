@@ -26,8 +26,12 @@ _MAX_CHARACTERS = 60
 def find_operator_change(old: Statement, new: Statement) -> Iterator[Difference]:
     """Yield the operator in which two statements differ, with its operands. Other differences yield nothing."""
     place = _find_place(old.tokens, new.tokens)
-    if place is None:
-        return
+    if place is not None:
+        yield describe_operator(old, new, place)
+
+
+def describe_operator(old: Statement, new: Statement, place: tuple[int, int]) -> Difference:
+    """Return the operators at the given indexes of two statements, with their operands."""
     ranges = [_find_operands(statement.tokens, index) for statement, index in zip((old, new), place, strict=True)]
     texts = [
         join_tokens(statement.tokens[start:end]) for statement, (start, end) in zip((old, new), ranges, strict=True)
@@ -35,7 +39,7 @@ def find_operator_change(old: Statement, new: Statement) -> Iterator[Difference]
     shown = texts if max(map(len, texts)) <= _MAX_CHARACTERS else differing_excerpts(texts[0], texts[1])
     start, end = ranges[1]
     text = add_context(new, start, end - 1, " -> ".join(shown), match_brackets(new.tokens))
-    yield Difference(text, texts[0], texts[1], new.tokens[start])
+    return Difference(text, texts[0], texts[1], new.tokens[start])
 
 
 def differ_by_operator(old: Sequence[Token], new: Sequence[Token]) -> bool:

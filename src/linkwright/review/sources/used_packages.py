@@ -23,6 +23,8 @@ _IMPORT = re.compile(
 )
 _MESSAGE = re.compile(r"/(?:msg|srv|action)/|_(?:msgs|srvs|actions)/")
 """A part of the path of a header of messages."""
+_MESSAGE_PACKAGE = re.compile(r"_(?:msgs?|srvs?|actions?|interfaces?)$")
+"""The end of the name of a package of messages, which serves sources in C++ and Python."""
 _SYSTEM_FOLDERS = frozenset(
     {*("arpa", "asm", "bits", "experimental", "ext", "linux", "mach", "net", "netinet", "sys", "tr1", "tr2")}
 )
@@ -161,7 +163,14 @@ def _compare_packages(
         if path is None:
             continue
         uses = {get_package(name): span for name, span in reversed(sides[0].read(path).items())}
-        packages = [name for name in reversed(uses) if not _uses(*sides, name, is_python=is_python)]
+        packages = [
+            name
+            for name in reversed(uses)
+            if not any(
+                _uses(*sides, name, is_python=language)
+                for language in ((True, False) if _MESSAGE_PACKAGE.search(name) else (is_python,))
+            )
+        ]
         if packages and other_path is not None:  # now in the package, or before
             kept = {
                 get_package(other) for name in sides[1].read_all(other_path) for other in (name, sides[1].rename(name))

@@ -38,6 +38,7 @@ from linkwright.review.users.lost_sources import find_lost_sources
 from linkwright.review.users.lost_states import find_lost_states
 from linkwright.review.users.lost_units import find_lost_units
 from linkwright.review.users.missing_fields import find_missing_fields
+from linkwright.review.users.missing_headers import find_missing_headers
 from linkwright.review.users.new_keys import find_new_keys
 from linkwright.review.users.old_dependencies import find_old_dependencies
 from linkwright.review.users.package_lookups import find_new_lookups
@@ -73,5 +74,5 @@ SEARCHES: tuple[Search, ...] = (
     ),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
-    *(find_unknown_joints, find_new_keys),
+    *(find_unknown_joints, find_new_keys, find_missing_headers),
 )
