@@ -262,3 +262,19 @@ def start(context):
     assert change == (
         "node 'arm/driver': parameter rate 650 if test(context) else 600 if fast(context) else 150 removed"
     )
+
+
+def test_method_of_the_text_of_an_argument_is_an_expression_of_xml(review_changes):
+    text = """from launch import LaunchDescription
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def start(context):
+    prefix = LaunchConfiguration("prefix").perform(context).strip("/")
+    return [Node(package="arm", executable="driver", parameters=[{"prefix": prefix}])]
+"""
+    found, _ = review_changes("arm.launch.py", text, text, text.replace('.strip("/")', '.rstrip("/")'))
+    assert found == [
+        "node 'arm/driver': parameter prefix $(eval '$(var prefix)'.strip('/')) -> $(eval '$(var prefix)'.rstrip('/'))"
+    ]
