@@ -123,3 +123,63 @@ def generate_launch_description():
 def test_function_of_an_action_is_compared_by_its_contents(review_changes, extra, expected):
     found, _ = review_changes("arm.launch.py", PLAIN, PLAIN, CALLING.replace("EXTRA", extra))
     assert found == expected
+
+
+GUARDED = CALLING.replace("EXTRA", "if TEST:\n        print('missing')\n        return []")
+
+
+@pytest.mark.parametrize(
+    ("test", "expected"),
+    [
+        ("not os.path.exists(path)", ["other code added: if not os.path.exists(path): ...; print('missing')"]),
+        ("path is None", ["other code added: if path is None: ...; print('missing')"]),
+        (
+            "mode == 'off'",
+            [
+                "node 'arm/driver': condition unless `mode == 'off'` added",
+                "other code added: if mode == 'off': ...; print('missing')",
+            ],
+        ),
+    ],
+)
+def test_missing_file_or_value_is_no_condition_of_actions(review_changes, test, expected):
+    found, _ = review_changes("arm.launch.py", PLAIN, PLAIN, GUARDED.replace("TEST", test))
+    assert found == expected
+
+
+UNPACKED = launch_text(
+    "path, other = VALUE",
+    "actions.append(Node(package='arm', executable='driver', parameters=[path], name=other))",
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("'a.yaml', 'arm'", "'b.yaml', 'arm'", ["node 'arm/driver': parameters [a.yaml] -> [b.yaml]"]),
+        (
+            "load('a')",
+            "load('b')",
+            [
+                "node 'arm/driver': name load(a)[1] -> load(b)[1]",
+                "node 'arm/driver': parameters [load(a)[0]] -> [load(b)[0]]",
+            ],
+        ),
+    ],
+)
+def test_unpacked_names_have_their_values(review_changes, old, new, expected):
+    texts = [UNPACKED.replace("VALUE", value) for value in (old, new)]
+    found, _ = review_changes("arm.launch.py", texts[0], *texts)
+    assert found == expected
+
+
+def test_only_values_that_a_changed_statement_uses_are_other_code(review_changes):
+    text = launch_text(
+        "count = 1",
+        "unused = Node(package='arm', executable='other', output='screen')",
+        "for number in range(count):",
+        "    actions.append(Node(package='arm', executable='driver', name=f'driver{number}'))",
+    )
+    new = text.replace("count = 1", "count = 2").replace(", output='screen'", "")
+    found, _ = review_changes("arm.launch.py", text, text, new)
+    assert found == ["other code: count = 1 -> count = 2"]

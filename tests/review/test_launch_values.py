@@ -245,3 +245,36 @@ def generate_launch_description():
     repository.write({path: text.format(new), "notes.md": "\n"})
     line = "argument 'namespace': default arm -> hand"
     assert breaking(compare(repository)) == ([line] if is_breaking else [])
+
+
+def test_name_that_is_assigned_twice_has_its_first_value_in_the_second_one(review_changes):
+    text = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def start(context):
+    rate = 600 if fast(context) else 150
+    rate = 650 if test(context) else rate
+    return [Node(package="arm", executable="driver", parameters=[{"rate": rate}])]
+"""
+    found, _ = review_changes("arm.launch.py", text, text, text.replace('parameters=[{"rate": rate}]', ""))
+    (change,) = [sentence for sentence in found if sentence.startswith("node")]
+    assert change == (
+        "node 'arm/driver': parameter rate 650 if test(context) else 600 if fast(context) else 150 removed"
+    )
+
+
+def test_method_of_the_text_of_an_argument_is_an_expression_of_xml(review_changes):
+    text = """from launch import LaunchDescription
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def start(context):
+    prefix = LaunchConfiguration("prefix").perform(context).strip("/")
+    return [Node(package="arm", executable="driver", parameters=[{"prefix": prefix}])]
+"""
+    found, _ = review_changes("arm.launch.py", text, text, text.replace('.strip("/")', '.rstrip("/")'))
+    assert found == [
+        "node 'arm/driver': parameter prefix $(eval '$(var prefix)'.strip('/')) -> $(eval '$(var prefix)'.rstrip('/'))"
+    ]

@@ -160,3 +160,29 @@ def test_removed_file_that_another_package_names_is_reported_once(repository, co
     assert sentences(subject(result, "b/launch/cell.launch.xml")) == [
         "names 'config/gains.yaml' of 'arm', which no longer exists"
     ]
+
+
+OLD_ROBOT = (
+    '<robot name="a"><link name="l"><visual><geometry><mesh filename="FILE"/></geometry></visual></link></robot>\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("build", "file", "is_found"),
+    [
+        (CMAKE, "package://arm/simulation/base.stl", False),
+        (CMAKE, "package://arm/config/gains.yaml", True),
+        (CMAKE, "package://arm/simulation/absent.stl", True),
+        (CMAKE, "package://arm/meshes/base.stl", True),
+        (CMAKE.replace("config launch", "config simulation"), "package://arm/simulation/base.stl", True),
+        (CMAKE.replace("config launch", "${FOLDERS}"), "package://arm/simulation/base.stl", True),
+    ],
+)
+def test_description_that_newly_names_a_folder_which_is_not_installed(repository, compare, build, file, is_found):
+    path = "a/config/arm.urdf"
+    meshes = {"a/simulation/base.stl": "solid\n", "a/meshes/base.stl": "solid\n"}
+    old = OLD_ROBOT.replace("FILE", "package://arm/config/base.stl")
+    repository.commit({**FILES, **meshes, "a/CMakeLists.txt": build, path: old})
+    repository.write({path: OLD_ROBOT.replace("FILE", file)})
+    text = "names files that 'arm' does not install: 'simulation/base.stl'"
+    assert (text not in breaking(compare(repository))) is is_found

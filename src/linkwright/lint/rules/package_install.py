@@ -25,7 +25,7 @@ _SHARED_FILE = lazy_pattern(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
     re.IGNORECASE,
 )
-_USUAL_FOLDERS = frozenset(
+USUAL_FOLDERS = frozenset(
     {
         *("launch", "urdf", "xacro", "robot", "robots", "description", "mesh", "meshes", "model", "models", "media"),
         *("materials", "world", "worlds", "config", "configs", "cfg", "param", "params", "rviz", "map", "maps", "srdf"),
@@ -321,7 +321,7 @@ def _find_uninstalled_folders(package: PackageContext, is_installed: Callable[[s
         folder
         for folder in list_shared_folders(package)
         if not is_installed(folder)
-        and (_find_top_folder(folder) in _USUAL_FOLDERS or any(path.startswith(f"{folder}/") for path in launch_paths))
+        and (_find_top_folder(folder) in USUAL_FOLDERS or any(path.startswith(f"{folder}/") for path in launch_paths))
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path, PurePosixPath
@@ -438,8 +438,9 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
     if common_sources:
         removed, added = ([part for part in parts if part.source not in common_sources] for parts in (removed, added))
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
-        removed += [part for part in outside(old.definitions, equal) if part.source not in new_sources]
-        added += [part for part in outside(new.definitions, equal) if part.source not in old_sources]
+        for parts, outline, others in ((removed, old, new_sources), (added, new, old_sources)):
+            changed = [part for part in outside(outline.definitions, equal) if part.source not in others]
+            parts += _find_used_definitions(common_sources, outline, changed) or changed
     removed, added = _drop_definitions(removed, new), _drop_definitions(added, old)
     added = _report_failures(pair, added, old, new)
     if not removed and not added:
@@ -467,6 +468,20 @@ def _drop_definitions(parts: Sequence[CodePart], other: LaunchOutline) -> list[C
     """Return the statements without those that assign a name in the other version, where it is assigned only once."""
     sources = {part.source for part in other.definitions}
     return [part for part in parts if part.source not in sources]
+
+
+def _find_used_definitions(
+    sources: Collection[str], outline: LaunchOutline, definitions: Collection[CodePart]
+) -> list[CodePart]:
+    """Return the definitions whose names statements use, also through other names of the file."""
+    used = " ".join(sources)
+    found = []
+    for part in reversed(outline.definitions):
+        name = re.match(r"\w+", part.source)
+        if name is not None and re.search(rf"\b{name[0]}\b", used):
+            used += f" {part.source}"
+            found += [part] if part in definitions else []
+    return found[::-1]
 
 
 def _add_definitions(parts: Sequence[CodePart], own: LaunchOutline, other: LaunchOutline) -> list[CodePart]:

@@ -113,26 +113,27 @@ def _find_simple_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
         yield node.targets[0].id, node.value
     elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
         yield node.target.id, node.value
-    elif isinstance(node, ast.Assign) and len(node.targets) == 1 and _is_unpacked_call(node):
-        yield from _find_unpacked_names(node.targets[0], node.value)
+    elif isinstance(node, ast.Assign) and (items := _unpack(node)):
+        yield from items
     elif isinstance(node, (ast.Assign, ast.AugAssign, ast.NamedExpr, ast.For, ast.comprehension, ast.withitem)):
         targets = (child for child in ast.walk(node) if isinstance(child, ast.Name))
         yield from ((target.id, None) for target in targets if isinstance(target.ctx, ast.Store))
 
 
-def _is_unpacked_call(node: ast.Assign) -> bool:
-    """Return whether an assignment unpacks the result of a call into names."""
+def _unpack(node: ast.Assign) -> list[tuple[str, ast.expr | None]]:
+    """Return the names of a statement such as ``a, b = f()`` with their items; empty for other statements."""
     target = node.targets[0]
-    is_plain = isinstance(target, (ast.Tuple, ast.List)) and all(isinstance(item, ast.Name) for item in target.elts)
-    return is_plain and isinstance(node.value, ast.Call)
-
-
-def _find_unpacked_names(target: ast.expr, call: ast.expr) -> Iterator[tuple[str, ast.expr | None]]:
-    """Yield the names into which the result of a call is unpacked, with the items of the result."""
-    for number, item in enumerate(target.elts if isinstance(target, (ast.Tuple, ast.List)) else ()):
-        if isinstance(item, ast.Name):
-            index = ast.copy_location(ast.Constant(number), item)
-            yield item.id, ast.copy_location(ast.Subscript(call, index, ast.Load()), item)
+    if len(node.targets) > 1 or not isinstance(target, (ast.Tuple, ast.List)):
+        return []
+    names = [name.id for name in target.elts if isinstance(name, ast.Name)]
+    if len(names) < len(target.elts):
+        return []
+    if isinstance(node.value, ast.Call):
+        items = [ast.Subscript(node.value, ast.Constant(index), ast.Load()) for index in range(len(names))]
+        return [(name, ast.copy_location(item, node.value)) for name, item in zip(names, items, strict=True)]
+    if isinstance(node.value, (ast.Tuple, ast.List)) and len(node.value.elts) == len(names):
+        return list(zip(names, node.value.elts, strict=True))
+    return []
 
 
 def is_chosen_value(node: ast.expr) -> bool:

@@ -122,6 +122,21 @@ def _find_owner_names(python: PythonFile, node: ast.expr) -> Iterator[str]:
         node = python.resolved(node.value)
 
 
+def _find_names_outside(tree: ast.AST, covered: Collection[int]) -> Iterator[str]:
+    """Yield the names that code outside of the calls of actions uses, and those that it assigns again."""
+    assigned: set[str] = set()
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.Name):
+            is_assigned = not isinstance(node.ctx, ast.Load)
+            if not is_assigned or node.id in assigned:
+                yield node.id
+            assigned |= {node.id} if is_assigned else set()
+        if id(node) not in covered:
+            pending += ast.iter_child_nodes(node)
+
+
 def _find_called_function(call: ast.Call) -> str | None:
     """Return the function that an action calls to make others, or None if it gets more than the context."""
     if called_name(call).rpartition(".")[2] != _CALLING_CLASS:
@@ -154,6 +169,7 @@ class _CodeNormalizer:
         names = (_find_called_function(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call))
         self._called_functions = {name for name in names if name is not None}
         self._texts: dict[int, str] = {}
+        self._names_outside = set(_find_names_outside(python.tree, covered))
 
     def format_node(self, node: ast.AST) -> str:
         """Return a part of the code in comparable form; empty if it only makes actions."""
@@ -212,6 +228,10 @@ class _CodeNormalizer:
         The value is compared where the name is used, unless the items of an unknown result are used there.
         """
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        if isinstance(targets[0], (ast.Tuple, ast.List)):
+            names = {name.id for name in targets[0].elts if isinstance(name, ast.Name)}
+            is_single = len(targets) == 1 and len(names) == len(targets[0].elts)
+            return is_single and names.isdisjoint(self._names_outside)  # the actions have the values
         return all(
             isinstance(target, ast.Name)
             and self._python.assigned_expression(target.id) is node.value

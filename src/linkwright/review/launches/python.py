@@ -38,6 +38,8 @@ _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 _GROUP_CLASS = "GroupAction"
 _LAUNCHES_MODULE = "moveit_configs_utils.launches"
 """The module whose functions make launch descriptions, such as ``generate_move_group_launch``."""
+_EXISTENCE = ("exists", "is_dir", "is_file", "isdir", "isfile")
+"""The functions that tell if a file or folder exists."""
 _EMPTY_SCOPE = Scope()
 _MAX_HELPER_DEPTH = 3
 _CallKey = tuple[int, tuple[int, ...]]
@@ -285,7 +287,7 @@ class _Reader:
                 holds = self.texts.evaluate_parameter(statement.test)
                 if holds:
                     return
-                if holds is not None:
+                if holds is not None or _is_guard_of_missing_value(statement):
                     continue
                 scope = scope.with_condition(format_branches(statement.test)[1])  # the rest runs otherwise
 
@@ -419,6 +421,29 @@ class _Reader:
         values = {name: default_texts.resolve(value) for name, value in defaults.items()}
         values |= {name: self.texts.resolve(value) for name, value in passed.items()}
         return bindings, values, extra
+
+
+def _is_guard_of_missing_value(statement: ast.If) -> bool:
+    """Return whether a statement only ends a function, with a message, because a file or value is missing."""
+    test = statement.test
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        is_missing = isinstance(test.operand, ast.Call) and called_name(test.operand).rpartition(".")[2] in _EXISTENCE
+    else:
+        operators = test.ops if isinstance(test, ast.Compare) else []
+        right = test.comparators[0] if isinstance(test, ast.Compare) else None
+        is_missing = len(operators) == 1 and isinstance(operators[0], ast.Is) and _is_nothing(right)
+    *messages, last = statement.body
+    is_message = all(isinstance(item, ast.Expr) and isinstance(item.value, ast.Call) for item in messages)
+    value = last.value if isinstance(last, ast.Return) else None
+    if isinstance(value, ast.Call) and called_name(value) == "LaunchDescription" and not value.keywords:
+        value = value.args[0] if value.args else None
+    return is_missing and is_message and isinstance(last, ast.Return) and _is_nothing(value)
+
+
+def _is_nothing(node: ast.expr | None) -> bool:
+    """Return whether an expression is None or an empty list."""
+    is_none = node is None or (isinstance(node, ast.Constant) and node.value is None)
+    return is_none or (isinstance(node, ast.List) and not node.elts)
 
 
 def _is_known_action(call: ast.Call) -> bool:

@@ -19,6 +19,7 @@ _PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "dirname")
 _STRING_FUNCTIONS = (*_PATH_FUNCTIONS, "str", "getenv", "format")
+_TEXT_METHODS = ("lstrip", "removeprefix", "removesuffix", "replace", "rstrip", "strip")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
@@ -47,6 +48,8 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
         return part(owner) if is_share else None
     if function == "perform" and isinstance(node.func, ast.Attribute):
         return part(node.func.value)
+    if function in _TEXT_METHODS and isinstance(node.func, ast.Attribute):
+        return _format_text_method(part(node.func.value), function, node)
     if first is None:
         return None
     if function == "perform_substitution":
@@ -77,6 +80,14 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
     if function.endswith("LaunchDescriptionSource"):
         return "".join(map(part, split_pieces(python, first)))
     return None
+
+
+def _format_text_method(text: str, method: str, call: ast.Call) -> str | None:
+    """Return a call of a method of a substitution's text as an expression of XML launch files, or None."""
+    arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+    if not text.startswith("$(") or "'" in text or not all(isinstance(item, ast.Constant) for item in arguments):
+        return None
+    return f"$(eval '{text}'.{method}({', '.join(map(ast.unparse, arguments))}))"
 
 
 def is_configurations(python: PythonFile, node: ast.expr) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
+from linkwright.review.launches.names import is_chosen_value
 from linkwright.review.launches.outlines import split_text, with_condition
 from linkwright.review.launches.python_syntax import find_list_item
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
@@ -413,6 +414,11 @@ class ExpressionTexts:
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
+        if isinstance(node, ast.IfExp) and not is_chosen_value(node):
+            values = (
+                unparse_on_one_line(v) if isinstance(v, ast.Constant) else part(v) for v in (node.body, node.orelse)
+            )
+            return f" if {unparse_on_one_line(node.test)} else ".join(values)
         return unparse_on_one_line(node)
 
     def _format_text_part(self, item: ast.expr, part: Formatter) -> str:

@@ -1,4 +1,4 @@
-"""Find files of the repository that still read files which a package no longer installs."""
+"""Find files of the repository that read files which a package no longer installs, or does not install."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.lint.rules.package_install import USUAL_FOLDERS
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Location
@@ -16,10 +17,11 @@ from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.users.installed_readers import READER_SUFFIXES, NamedPath, find_named_paths
 from linkwright.review.users.references import LAUNCH_SUFFIXES
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 from linkwright.xacro.cache import read_document
 
 _HEADERS = "include/"
+_DESCRIPTION_SUFFIXES = (".urdf", ".xacro")
 
 
 @dataclass
@@ -73,6 +75,45 @@ def find_lost_installs(versions: Versions, changed_files: Sequence[ChangedFile])
             continue
         source = SourceText(str(versions.new.file(path)), text)
         yield from ((path, change) for change in _compare_reader(versions, path, source, lost))
+
+
+def find_uninstalled_paths(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the descriptions that newly name files of a folder which its package of ROS 2 does not install.
+
+    Findings report folders with usual names, such as ``meshes``.
+    """
+    for file in changed_files:
+        if file.old_path is None or file.new_path is None or not file.new_path.endswith(_DESCRIPTION_SUFFIXES):
+            continue
+        old, new = (
+            {
+                (item.package, item.path): item
+                for item in find_named_paths(SourceText(str(version.file(path)), version.text(path)), path)
+            }
+            for version, path in ((versions.old, file.old_path), (versions.new, file.new_path))
+        )
+        named: dict[str, dict[str, NamedPath]] = {}
+        for (package, path), item in new.items():
+            if (package, path) not in old and item.is_complete and _is_uninstalled(versions.new, file.new_path, item):
+                named.setdefault(package, {})[path] = item
+        for package, paths in named.items():
+            text = phrase("names files that '{package}' does not install: {names}", package=package, names=_list(paths))
+            yield file.new_path, _make_change(file.new_path, text, phrase("it does not find the files"), paths)
+
+
+def _is_uninstalled(version: Version, path: str, item: NamedPath) -> bool:
+    """Return whether a file of a package of ROS 2 is in a folder from which the package installs nothing."""
+    share = version.share_of(item.package, version.file(path).parent)
+    folder = None if share is None else version.relative(share)
+    top = item.path.partition("/")[0]
+    if share is None or folder is None or top in USUAL_FOLDERS or not (share / item.path).is_file():
+        return False
+    folder = "" if folder == "." else folder
+    facts = read_package_facts(version, folder)
+    if facts is None or not facts.is_complete or Manifest(read_document(str(share / MANIFEST))).is_ros1:
+        return False
+    installed = {source.partition("/")[0] for target, source in facts.files.items() if target.startswith("share/")}
+    return top not in installed and any((share / name).is_dir() for name in installed)
 
 
 def _list_words(lost: Iterable[_LostInstall]) -> set[str]:

@@ -27,7 +27,7 @@ from linkwright.review.users.lost_description_arguments import (
 )
 from linkwright.review.users.lost_display_classes import find_lost_display_classes
 from linkwright.review.users.lost_displays import find_lost_displays
-from linkwright.review.users.lost_installs import find_lost_installs
+from linkwright.review.users.lost_installs import find_lost_installs, find_uninstalled_paths
 from linkwright.review.users.lost_interfaces import find_lost_interfaces
 from linkwright.review.users.lost_libraries import find_lost_libraries
 from linkwright.review.users.lost_lifecycles import find_lost_lifecycles
@@ -60,6 +60,7 @@ SEARCHES: tuple[Search, ...] = (
         find_lost_description_arguments,
         find_undeclared_description_arguments,
         find_lost_installs,
+        find_uninstalled_paths,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
     *(find_old_package_names, find_old_dependencies),
