@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.polyhedron import Faces, is_closed, merge_corners, polyhedron_properties
+from linkwright.geometry.surface_patches import Triangles, split_into_patches
 
 THICKNESS = 0.02
 """The thickness, in m, of a face that becomes a separate piece."""
@@ -20,18 +21,19 @@ _MAX_CORNERS = 2000
 """A part with more corners is not tested for convexity, because it is neither a box nor a wall."""
 
 
-def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]:
+def convex_pieces(vertices: Array, faces: Faces, max_pieces: int, max_patches: int = 1) -> list[Array]:
     """Decompose a static surface into convex pieces.
 
     A connected part that is nearly convex becomes one piece, its hull. In all other parts, each flat face becomes a
     plate that extends `THICKNESS` inwards; if the face is not convex, each of its triangles becomes a plate. Rooms
     therefore stay hollow, and tables keep their legs. If there would be too many pieces, the parts with the most plates
-    become hulls.
+    become the hulls of patches of their surface: caves and terrains stay hollow, and are coarser than their triangles.
 
     Args:
         vertices: corners in m, shape (vertices, 3).
         faces: indices of corners, shape (faces, 3), counterclockwise from outside.
-        max_pieces: the maximum number of pieces.
+        max_pieces: the maximum number of pieces, patches excluded.
+        max_patches: the maximum number of patches; with 1, a part with too many plates becomes its hull.
 
     Returns:
         The corners of each piece, shape (corners, 3).
@@ -41,22 +43,44 @@ def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]
         return []
     components = [faces[component] for component in _find_components(faces, len(vertices))]
     pieces: list[Array] = []
-    concave: list[tuple[Array, list[Array]]] = []
+    concave: list[tuple[Faces, list[Array]]] = []
     for component_faces in components:
         corners = vertices[np.unique(component_faces)]
         if _is_nearly_convex(vertices, component_faces, corners):
             pieces.append(corners)
         else:
-            concave.append((corners, _list_plates(vertices, component_faces, max_pieces)))
+            concave.append((component_faces, _list_plates(vertices, component_faces, max_pieces)))
     concave.sort(key=lambda item: len(item[1]))
     remaining = max_pieces - len(pieces) - len(concave)
-    for corners, plates in concave:
+    coarse: list[Faces] = []
+    for component_faces, plates in concave:
         if len(plates) - 1 <= remaining:
             pieces += plates
             remaining -= len(plates) - 1
         else:
-            pieces.append(corners)
+            coarse.append(component_faces)
+    for number, component_faces in enumerate(coarse):
+        patches = _list_patches(vertices, component_faces, max(max_patches // (len(coarse) - number), 1))
+        max_patches -= len(patches)
+        pieces += patches
     return pieces
+
+
+def _list_patches(vertices: Array, faces: Faces, max_patches: int) -> list[Array]:
+    """Return the corners of hulls for the patches of a part; only its hull if it needs no patches."""
+    is_solid = is_closed(faces)
+    if is_solid and polyhedron_properties(vertices, faces).mass < 0.0:
+        faces = faces[:, ::-1]
+    patches = split_into_patches(vertices[faces], max_patches, is_solid=is_solid)
+    return [_make_shell(patch) for patch in patches] if len(patches) > 1 else [vertices[np.unique(faces)]]
+
+
+def _make_shell(patch: Triangles) -> Array:
+    """Return the corners of a patch, and the same corners below the side that its triangles face on average."""
+    corners: Array = np.unique(patch.reshape(-1, 3), axis=0)
+    normal = np.cross(patch[:, 1] - patch[:, 0], patch[:, 2] - patch[:, 0]).sum(axis=0)
+    length = float(np.linalg.norm(normal))
+    return _make_plate(corners, normal / length) if length > 0.0 else corners
 
 
 def thicken(corners: Array) -> Array:

@@ -18,14 +18,13 @@ from linkwright.images.transports import ImageSource, Unpacker
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
+from linkwright.perception.nodes.camera_pairs import CameraPairs
 from linkwright.perception.nodes.image_arrays import LINEAR, NEAREST, Sampling, create_resizing, to_array, to_image
 from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 from linkwright.perception.nodes.rectification import create_rectification
 
 _IMAGE_TYPE, _INFO_TYPE = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo"
 _PUBLISHER_DEPTH = 10
-_MAX_PENDING = 10
-"""The number of images and of camera_infos that wait for their counterpart."""
 _ERROR_PERIOD_S = 5.0
 
 
@@ -42,7 +41,7 @@ class CameraNode(SingleNode, ABC):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._pending: dict[tuple[int, int], dict[str, Any]] = {}
+        self._pairs = CameraPairs(self._receive)
         self._unpacker = Unpacker()
         node = self._node
         with handle_start_errors(node):
@@ -83,31 +82,15 @@ class CameraNode(SingleNode, ABC):
     def _subscribe(self) -> list[Subscription[Any]]:
         info_topic = get_info_topic(self._source.base)
         return [
-            self._node.create_subscription(get_message(_INFO_TYPE), info_topic, self._on_info, SENSOR_DATA_QOS),
+            self._node.create_subscription(get_message(_INFO_TYPE), info_topic, self._pairs.add_info, SENSOR_DATA_QOS),
             self._node.create_subscription(
-                get_message(self._source.message_type), self._source.topic, self._on_image, SENSOR_DATA_QOS
+                get_message(self._source.message_type), self._source.topic, self._pairs.add_image, SENSOR_DATA_QOS
             ),
         ]
 
-    def _on_info(self, message: Any) -> None:
-        self._collect("info", message)
-
-    def _on_image(self, message: Any) -> None:
-        self._collect("image", message)
-
-    def _collect(self, kind: str, message: Any) -> None:
-        """Convert an image when its camera_info has arrived, too."""
-        stamp = message.header.stamp
-        parts = self._pending.setdefault((stamp.sec, stamp.nanosec), {})
-        parts[kind] = message
-        if len(parts) < 2:
-            while len(self._pending) > _MAX_PENDING:
-                del self._pending[next(iter(self._pending))]
-            return
-        del self._pending[stamp.sec, stamp.nanosec]
+    def _receive(self, message: Any, info: Any) -> None:
         try:
-            image = self._unpacker.image(parts["image"], self._source.transport_of(parts["image"]))
-            self.convert(image, parts["info"])
+            self.convert(self._unpacker.image(message, self._source.transport_of(message)), info)
         except (ValueError, BadImageError) as error:
             self._node.get_logger().error(
                 phrase("the image on '{topic}' is left out: {reason}", topic=self._source.topic, reason=str(error)),

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.geometry.single import Transform, quaternion_from_rpy
@@ -83,6 +83,8 @@ class Simulator(SingleNode):
     """
 
     DEFAULT_NAME = "gazebo"
+    REPEATS_TIME: ClassVar[bool] = False
+    """Whether a paused simulation repeats its time on ``/clock``. Gazebo classic publishes it only in steps."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         from linkwright.graph.stepped.node import SteppedNode
@@ -120,13 +122,15 @@ class Simulator(SingleNode):
             )
             self.server = SimulationServer(simulation, self._node, server_options)
             stepped_node = SteppedNode(self._node, self.server.exchange, owned=False)
-            self._reports = Reports(self.server, stepped_node, parameters["publish_rate"])
+            self._reports = Reports(
+                self.server, stepped_node, parameters["publish_rate"], repeats_time=self.REPEATS_TIME
+            )
             self.runner = Runner(
                 self.server,
                 factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
                 paused=parameters["pause"],
                 seconds=parameters["seconds"] or None,
-                watch=lambda: self._reports.publish_due(lambda: self.runner.real_time_factor),
+                watch=self._publish_due,
                 on_state=self._publish_state,
                 on_end=partial(_call_threadsafe, loop, self._finish),
             )
@@ -180,6 +184,9 @@ class Simulator(SingleNode):
         if not self.finished.done():
             self.finished.set_result(status)
 
+    def _publish_due(self) -> None:
+        self._reports.publish_due(lambda: self.runner.real_time_factor, paused=self.runner.is_paused)
+
     def _publish_state(self) -> None:
         self._reports.publish_state(paused=self.runner.is_paused)
 
@@ -202,8 +209,11 @@ class Simulator(SingleNode):
 class GzServer(Simulator):
     """The simulator's node in place of the server of gz.
 
-    A world without plugins gets the default plugins of gz.
+    A world without plugins gets the default plugins of gz. A paused simulation repeats its time, as gz does after each
+    iteration, so that nodes with simulated time have a time before the first step.
     """
+
+    REPEATS_TIME = True
 
     def _get_default_plugins(self) -> Sequence[Plugin]:
         from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS

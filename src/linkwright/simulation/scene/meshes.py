@@ -30,6 +30,8 @@ from linkwright.xmltree import Element
 
 _MAX_PIECES = 300
 """The maximum number of convex pieces of a mesh. Each piece costs time in every step."""
+_MAX_PATCHES = 1000
+"""The maximum number of patches of caves, terrains and other static surfaces that have more flat faces than that."""
 _MAX_TRIANGLES = 1_000_000
 """The maximum number of triangles. Larger meshes need gigabytes without improving contacts or images."""
 _MAX_HULL_VERTICES = 64
@@ -147,7 +149,7 @@ class MeshLibrary:
         if np.prod(shape.scale) < 0:
             faces = faces[:, ::-1]
         if fixed:
-            pieces = convex_pieces(vertices, faces, _MAX_PIECES)
+            pieces = convex_pieces(vertices, faces, _MAX_PIECES, _MAX_PATCHES)
         else:
             pieces = ([] if rolls else split_into_hulls(vertices, faces)) or [vertices[np.unique(faces)]]
         return [thicken(corners) for corners in pieces]

@@ -29,8 +29,8 @@ from linkwright.simulation.server.server import SimulationServer
 T = TypeVar("T")
 _CLOCK_TYPE, _STATE_TYPE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
 _METRICS_TYPE = "gazebo_msgs/msg/PerformanceMetrics"
-_POSES_PERIOD_S, _METRICS_PERIOD_S = 1 / 30, 0.5
-"""The publishing periods of poses and performance metrics, in s of real time."""
+_POSES_PERIOD_S, _METRICS_PERIOD_S, _PAUSED_CLOCK_PERIOD_S = 1 / 30, 0.5, 0.1
+"""The publishing periods of poses, performance metrics and the time of a paused simulation, in s of real time."""
 PLAYING, PAUSED = 1, 2
 """The values of ``state`` in simulation_interfaces/msg/SimulationState."""
 
@@ -42,10 +42,14 @@ class Reports:
         server: the server of the simulation.
         node: the simulator's node.
         clock_rate: the rate of ``/clock`` in simulated time, in Hz; 0 for every step.
+        repeats_time: whether a paused simulation repeats its time, at 10 Hz of real time.
     """
 
-    def __init__(self, server: SimulationServer, node: SteppedNode, clock_rate: float) -> None:
+    def __init__(
+        self, server: SimulationServer, node: SteppedNode, clock_rate: float, *, repeats_time: bool = False
+    ) -> None:
         self._server = server
+        self._repeats_time = repeats_time
         self._clock = node.publisher(_CLOCK_TYPE, "/clock", SIMULATION_CLOCK_QOS)
         self._state = node.publisher(_STATE_TYPE, "/simulation_state", LATCHED_QOS)
         self._description = node.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
@@ -61,7 +65,7 @@ class Reports:
         self._saved_models: dict[
             tuple[int, str, Transform], tuple[Model, WrittenModel]
         ] = {}  # stored models keep their ids
-        self._last_poses = self._last_metrics = 0.0
+        self._last_poses = self._last_metrics = self._last_repeat = 0.0
         server.on_reset.append(self._publish_time)
         server.simulation.call_every(
             round(NANOSECONDS_PER_SECOND / clock_rate) if clock_rate > 0 else 0, self._publish_time
@@ -105,12 +109,16 @@ class Reports:
         converted: T = with_changed_uris(part, Path.cwd(), self._to_absolute_uri)
         return converted
 
-    def publish_due(self, get_factor: Callable[[], float]) -> None:
-        """Publish poses and the real-time factor if they are due and have subscriptions.
+    def publish_due(self, get_factor: Callable[[], float], *, paused: bool) -> None:
+        """Publish poses, the real-time factor, and the time of a paused simulation if they are due.
 
-        Poses are due at 30 Hz and the factor at 2 Hz of real time; call this at least as often.
+        Poses are due at 30 Hz, the factor at 2 Hz and the time at 10 Hz of real time; call this at least as often.
+        Poses and the factor are published only if they have subscriptions.
         """
         now = time.monotonic()
+        if paused and self._repeats_time and now - self._last_repeat >= _PAUSED_CLOCK_PERIOD_S:
+            self._last_repeat = now
+            self._publish_time()
         if now - self._last_poses >= _POSES_PERIOD_S and self._poses.is_wanted:
             self._last_poses = now
             self.publish_water()

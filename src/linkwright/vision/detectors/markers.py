@@ -60,9 +60,9 @@ class MarkerDetector(Detector):
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect the markers of the dictionary."""
-        if min(image.shape[:2]) < _MIN_IMAGE_SIDE_PIXELS:
+        if min(image.shape[:2]) < MIN_IMAGE_SIDE_PIXELS:
             return Detections.empty(self._names)
-        corners, ids, _ = self._detector.detectMarkers(_to_gray(image))
+        corners, ids, _ = self._detector.detectMarkers(to_gray(image))
         classes = [] if ids is None else [int(number) for number in np.ravel(ids)]
         marker_corners = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
         boxes = [_find_bounding_box(points) for points in marker_corners]
@@ -102,9 +102,9 @@ class QrDetector(Detector):
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect and read QR codes."""
-        if min(image.shape[:2]) < _MIN_IMAGE_SIDE_PIXELS:
+        if min(image.shape[:2]) < MIN_IMAGE_SIDE_PIXELS:
             return Detections.empty(())
-        gray = _to_gray(image)
+        gray = to_gray(image)
         has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(gray)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if has_codes else []
         decoded = [text or self._read(gray, code) for text, code in zip(texts, codes, strict=False)]
@@ -133,11 +133,12 @@ class QrDetector(Detector):
 
 _ENLARGED_SIDE_PIXELS, _QUIET_ZONE_PIXELS = 340, 40
 """The side of an enlarged code, and the width of the empty border around it, in pixels."""
-_MIN_IMAGE_SIDE_PIXELS = 8
+MIN_IMAGE_SIDE_PIXELS = 8
 """The minimum side of an image in pixels: OpenCV fails on smaller images."""
 
 
-def _to_gray(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def to_gray(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return an RGB image in shades of gray."""
     cv2 = load_opencv()
     gray: NDArray[np.uint8] = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     return gray
