@@ -9,6 +9,7 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array, row_from_pose
 from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.meshes import TriangleMesh
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.planning.robot_model import PlacedShape
@@ -53,12 +54,16 @@ def _convert_to_parts(collision: Collision, meshes: MeshLibrary) -> list[PlacedS
         if parts := split_into_hulls(mesh.vertices, mesh.faces):
             center = np.concatenate(parts).mean(axis=0)
             return [PlacedShape(corners, pose, center) for corners in parts]
+        corners = hull_corners(_used_vertices(mesh))
+        return [] if corners is None else [PlacedShape(corners, pose)]
     shape = convert_collision(collision, meshes)
     return [] if shape is None else [shape]
 
 
 def convert_collision(collision: Collision, meshes: MeshLibrary) -> PlacedShape | None:
-    """Return the shape of a collision, the hull for a mesh, or None if it has no volume.
+    """Return the shape of a collision, or None if it has no volume.
+
+    The shape of a mesh has all its vertices, because MuJoCo computes their hull much faster than `hull_corners`.
 
     Raises:
         LinkwrightError: the mesh cannot be read.
@@ -66,8 +71,8 @@ def convert_collision(collision: Collision, meshes: MeshLibrary) -> PlacedShape 
     shape, pose = collision.geometry, row_from_pose(collision.origin)
     if isinstance(shape, Mesh):
         mesh = meshes.load(shape, collision.element)
-        corners = hull_corners(mesh.vertices[np.unique(mesh.faces)])
-        return None if corners is None else PlacedShape(corners, pose)
+        points = _used_vertices(mesh)
+        return PlacedShape(points, pose) if _has_volume(points) else None
     sizes: tuple[float, ...]
     if isinstance(shape, Box):
         sizes = shape.size
@@ -85,13 +90,20 @@ def hull_corners(points: Array) -> Array | None:
     Args:
         points: in m, shape (points, 3).
     """
-    if len(points) < _MIN_CORNERS:
-        return None
-    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if not extents[-1] > _MIN_THICKNESS * extents[0]:
-        return None
-    faces = convex_hull(points)
+    faces = convex_hull(points) if _has_volume(points) else None
     return None if faces is None else points[np.unique(faces)]
+
+
+def _used_vertices(mesh: TriangleMesh) -> Array:
+    vertices: Array = mesh.vertices[np.unique(mesh.faces)]
+    return vertices
+
+
+def _has_volume(points: Array) -> bool:
+    if len(points) < _MIN_CORNERS:
+        return False
+    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return bool(extents[-1] > _MIN_THICKNESS * extents[0])
 
 
 def scale_shape(placed_shape: PlacedShape, factor: float) -> PlacedShape:

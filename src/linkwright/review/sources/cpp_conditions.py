@@ -23,6 +23,8 @@ _DIRECTIVE = re.compile(
 _DEFINED = re.compile(r"\bdefined\s*(?:\(\s*(\w+)\s*\)|(\w+))")
 _SIMPLE = re.compile(r"\w+|defined\(\w+\)")
 _GUARD = re.compile(r"!\s?defined\((?P<name>\w+)\)")
+_DISABLING = re.compile(r"^[ \t]*#[ \t]*(?:if[ \t(]*(?:0|false)\b|el)", re.MULTILINE)
+"""A directive without which a source has no disabled code: a condition that never holds, or another branch."""
 _NEVER, _ALWAYS = "0", "1"
 _CONSTANTS = {"0": _NEVER, "false": _NEVER, "1": _ALWAYS, "true": _ALWAYS, "defined(__cplusplus)": _ALWAYS}
 
@@ -92,7 +94,7 @@ _NO_BRACES = str.maketrans("{}", "  ")
 
 def blank_disabled(text: str) -> str:
     """Return a C++ source with spaces for the code whose condition never holds, such as under ``#if 0``."""
-    if "#" not in text or not re.search(r"#[ \t]*if", text):
+    if _DISABLING.search(text) is None:
         return text
     for start, end in Conditions(text).find_disabled():
         text = text[:start] + re.sub(r"[^\n]", " ", text[start:end]) + text[end:]

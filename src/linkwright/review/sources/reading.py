@@ -37,11 +37,16 @@ def try_read_source(path: Path) -> SourceText | None:
 
     Disabled code in C++, such as under ``#if 0``, is blank.
     """
+    text = try_read_text(path)
+    if text is None:
+        return None
+    return SourceText(str(path), blank_disabled(text) if path.suffix in CPP_SUFFIXES else text)
+
+
+def try_read_text(path: Path) -> str | None:
+    """Return the whole text of a source, or None if it cannot be read or is too large."""
     try:
-        if path.stat().st_size > _MAX_BYTES:
-            return None
-        text = path.read_text("utf-8-sig", errors="replace")  # without a byte order mark
-        return SourceText(str(path), blank_disabled(text) if path.suffix in CPP_SUFFIXES else text)
+        return None if path.stat().st_size > _MAX_BYTES else path.read_text("utf-8-sig", errors="replace")
     except OSError:
         return None
 

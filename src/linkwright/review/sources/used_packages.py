@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping
-from pathlib import PurePosixPath
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, SourceText, Span, joined_first, phrase
@@ -13,7 +14,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import package_name
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
-from linkwright.review.sources.reading import is_program_text, try_read_source
+from linkwright.review.sources.reading import is_program_text, try_read_source, try_read_text
 from linkwright.review.versions import TEST_FOLDERS, Version
 
 _BLOCK_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
@@ -67,7 +68,8 @@ class UsedPackages:
         self._new_packages = new_packages
         self._package = package
         self._reported: set[str] = set()
-        self._used: dict[bool, frozenset[str]] = {}
+        self._sources: dict[bool, Mapping[str, Sequence[str]]] = {}
+        self._read: dict[str, frozenset[str]] = {}
         self._own: frozenset[str] | None = None
 
     def read(self, path: str) -> dict[str, Span]:
@@ -88,12 +90,31 @@ class UsedPackages:
 
     def uses(self, name: str, *, is_python: bool) -> bool:
         """Return whether a source of the package uses a package, header or module."""
-        if is_python not in self._used:
+        package = get_package(name)
+        packages = [package, *(old for old, new in self._new_packages.items() if new == package)]
+        sources = self._find_sources(is_python=is_python)
+        return any(name in self._list_names(path) for used in packages for path in sources.get(used, ()))
+
+    def _find_sources(self, *, is_python: bool) -> Mapping[str, Sequence[str]]:
+        """Return the sources that seem to use each package, which those in comments do, too.
+
+        To read all sources of a package takes too long.
+        """
+        if is_python not in self._sources:
+            sources = defaultdict(list)
             paths = self._list_python_sources() if is_python else self._version.paths(CPP_SUFFIXES, self._package)
-            names = {name for path in paths if _is_searched(path) for name in self.read(path)}
-            names |= set(map(self.rename, names))
-            self._used[is_python] = frozenset(names | {get_package(name) for name in names})
-        return name in self._used[is_python]
+            for path in filter(_is_searched, paths):
+                for package in _find_packages(self._version.file(path), is_python=is_python):
+                    sources[package].append(path)
+            self._sources[is_python] = sources
+        return self._sources[is_python]
+
+    def _list_names(self, path: str) -> frozenset[str]:
+        """Return the packages, headers and modules that a source uses, by their old and new names."""
+        if path not in self._read:
+            names = {text for name in self.read(path) for text in (name, self.rename(name))}
+            self._read[path] = frozenset(names | {get_package(name) for name in names})
+        return self._read[path]
 
     def claim(self, name: str) -> bool:
         """Return whether a package or header is not reported yet, and mark it as reported."""
@@ -212,6 +233,14 @@ def _format_packages(names: Phrase, *, is_python: bool, is_old: bool) -> Phrase:
     if is_old:
         return phrase("packages no longer included: {names}", names=names)
     return phrase("packages included for the first time: {names}", names=names)
+
+
+def _find_packages(path: Path, *, is_python: bool) -> set[str]:
+    """Return the packages that a source seems to use, without regard to comments and disabled code."""
+    text = try_read_text(path) or ""
+    if is_python:
+        return {module for module, _ in _find_modules(text)}
+    return {get_package(match["name"]) for match in _INCLUDE.finditer(text)}
 
 
 def _read_includes(source: SourceText) -> dict[str, Span]:
