@@ -47,6 +47,25 @@ def test_node_that_another_action_starts_is_not_missing(repository, compare, rep
     assert [sentence for sentence in breaking(compare(repository)) if sentence != unused] == expected
 
 
+SWITCHED = """<launch>
+  <arg name="gui" default="false"/>
+  <node pkg="joint_state_publisher" type="joint_state_publisher" name="joints" unless="$(arg gui)"/>
+  <node pkg="PACKAGE" type="PACKAGE" name="joints" if="$(arg gui)"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("package", "expected"),
+    [("joint_state_publisher_gui", []), ("arm_driver", ["argument 'gui': default false -> true"])],
+)
+def test_publisher_of_joint_states_with_a_window_is_no_missing_node(repository, compare, package, expected):
+    text = SWITCHED.replace("PACKAGE", package)
+    repository.commit({"arm/launch/arm.launch": text})
+    repository.write({"arm/launch/arm.launch": text.replace('"false"', '"true"')})
+    assert breaking(compare(repository)) == expected
+
+
 OPTIONS = """from argparse import ArgumentParser
 from launch import LaunchDescription
 from launch_ros.actions import Node
