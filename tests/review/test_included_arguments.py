@@ -140,6 +140,34 @@ def test_argument_that_an_included_file_of_another_package_may_declare(repositor
     assert (expected in breaking(result)) == (expected == UNDECLARED)
 
 
+LATER = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def start_tools(context):
+    return []
+
+
+def generate_launch_description():
+    include = INCLUDE
+    return LaunchDescription([include, OpaqueFunction(function=start_tools)])
+"""
+
+
+@pytest.mark.parametrize(("package", "is_certain"), [("other", False), ("ros_gz_sim", True)])
+def test_include_below_the_action_in_python_may_start_before_it(repository, compare, package, is_certain):
+    old = LATER.replace("INCLUDE", SIMULATION.replace("PACKAGE", package))
+    repository.commit({PATH: old, "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")})
+    repository.write({PATH: old.replace("return []", f"return [{TOOL.replace('{name}', 'tool')}]")})
+    found = sentences(subject(compare(repository), PATH))
+    assert (UNDECLARED if is_certain else MAYBE_DECLARED) in found
+
+
 GROUPS = """<launch>
   <group{scoped}>
     <include file="$(find-pkg-share other)/launch/other.launch.xml" />
