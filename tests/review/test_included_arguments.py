@@ -168,6 +168,56 @@ def test_include_below_the_action_in_python_may_start_before_it(repository, comp
     assert (UNDECLARED if is_certain else MAYBE_DECLARED) in found
 
 
+INNER = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("size", default_value="3"),
+        Node(package="arm", executable="arm", parameters=[{"size": LaunchConfiguration("size")}]),
+    ])
+"""
+OUTER = """<launch>
+  <arg name="size" default="{default}" />
+  <include file="$(find-pkg-share arm)/launch/inner.launch.py">
+    <arg name="size" value="$(var size)" />
+  </include>
+</launch>
+"""
+PASSED = '    <arg name="size" value="$(var size)" />\n'
+
+
+@pytest.mark.parametrize(
+    ("default", "replaced", "expected"),
+    [
+        ("3", PASSED, "argument 'size' removed: default 3; arm/launch/inner.launch.py declares it"),
+        (
+            "4",
+            PASSED,
+            "argument 'size' removed: default 4; arm/launch/inner.launch.py declares it with the default '3'",
+        ),
+        ("3", '"$(var size)"', None),
+    ],
+)
+def test_included_file_still_gets_a_value_that_the_outer_file_no_longer_declares(
+    repository, compare, default, replaced, expected
+):
+    path, text = "arm/launch/outer.launch.xml", OUTER.format(default=default)
+    inner = {"arm/launch/inner.launch.py": INNER, "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({path: text, **inner})
+    declared = f'  <arg name="size" default="{default}" />\n'
+    repository.write({path: text.replace(declared, "").replace(replaced, '"5"' if expected is None else "")})
+    result = compare(repository)
+    if expected is None:
+        assert breaking(result) == [f"argument 'size' removed: default {default}"]
+    else:
+        assert expected in sentences(subject(result, path))
+        assert breaking(result) == []
+
+
 GROUPS = """<launch>
   <group{scoped}>
     <include file="$(find-pkg-share other)/launch/other.launch.xml" />

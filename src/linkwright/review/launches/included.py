@@ -320,6 +320,27 @@ class IncludedActions:
                 return True
         return False
 
+    def find_declaration(self, name: str) -> tuple[str, str | None] | None:
+        """Return an included file of ROS 2 that declares and uses an argument which the include does not set, or None.
+
+        The file gets the value of the callers of the launch file. It comes with the default of the argument.
+        """
+        for include in self.outline.entries:
+            holds = evaluate_condition(self.outline.resolve(include.settings.get(CONDITION, "")))
+            if include.kind != "include" or holds is False or name in map(without_condition, include.settings):
+                continue
+            file = self.find_included_file(include, self.file)
+            outline = None if file is None else self._read_outline(file)
+            path = None if file is None else self._version.relative(file)
+            if file is None or outline is None or path is None or outline.is_ros1 or self.outline.is_ros1:
+                continue
+            declaration = next(
+                (entry for entry in outline.entries if entry.kind == "argument" and entry.name == name), None
+            )
+            if declaration is not None and uses_argument(file, name, outline.entries):
+                return path, declaration.settings.get("default")
+        return None
+
     def passes_to_unknown_file(self, name: str) -> bool:
         """Return whether the launch file passes the value of an argument to a file outside of the repository."""
         includes = [entry for entry in self.outline.entries if entry.kind == "include"]
