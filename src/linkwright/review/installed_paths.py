@@ -40,7 +40,7 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
 def is_without_manifest(version: Version, path: str) -> bool:
     """Return whether a file is in the folder of a build file of catkin or ament that has no manifest.
 
-    Such a folder is no package, and its build fails, so that nothing of it is installed.
+    Such a folder is not a package, and its build fails, so that nothing of it is installed.
     """
     if version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None:
         return False
