@@ -410,3 +410,12 @@ def test_simulated_time_by_default_without_a_simulation(repository, compare, pat
     repository.write({path: CLOCK.format(default="true", more=more)})
     reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
     assert reasons == ([CLOCK_REASON] if is_breaking else [])
+
+
+@pytest.mark.parametrize(("value", "is_changed"), [("True", False), ("false", True), ('"true"', True)])
+def test_boolean_parameter_in_another_notation_is_unchanged(repository, compare, value, is_changed):
+    text = '<launch><node pkg="arm" type="arm" name="arm"><param name="on" type="bool" value=\'{}\'/></node></launch>\n'
+    repository.commit({"arm/launch/arm.launch": text.format("true")})
+    repository.write({"arm/launch/arm.launch": text.format(value)})
+    changed = [sentence for found in compare(repository).subjects for sentence in sentences(found)]
+    assert bool(changed) is is_changed
