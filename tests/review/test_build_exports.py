@@ -147,3 +147,36 @@ def test_a_folder_that_a_renamed_package_installs_as_before_is_not_new(repositor
     repository.write({**{f"arm/{path}": text.format("gear") for path, text in files.items()}, "arm/config/c.txt": "c"})
     assert sentences(subject(compare(repository), "arm/package.xml")) == ["package 'arm' renamed to 'gear'"]
     assert not any("installed now" in line for found in compare(repository).subjects for line in sentences(found))
+
+
+MOVED = "installed in share/arm/plugins instead of share/arm: 'p.xml'"
+
+
+@pytest.mark.parametrize(("exported", "is_breaking"), [("plugins/p.xml", False), ("p.xml", True)])
+def test_plugin_description_may_move_with_its_export(repository, compare, exported, is_breaking):
+    manifest = MANIFEST.replace("</package>", '<export><moveit_core plugin="${prefix}/p.xml"/></export></package>')
+    cmake = f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\ninstall(FILES p.xml DESTINATION share/arm)\n"
+    repository.commit({"arm/package.xml": manifest, "arm/CMakeLists.txt": cmake, "arm/p.xml": "<library/>\n"})
+    repository.write(
+        {
+            "arm/package.xml": manifest.replace("/p.xml", f"/{exported}"),
+            "arm/CMakeLists.txt": cmake.replace("share/arm)", "share/arm/plugins)"),
+        }
+    )
+    result = compare(repository)
+    assert MOVED in sentences(subject(result, "arm/CMakeLists.txt"))
+    assert (MOVED in breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(("find", "is_breaking"), [("", False), ("find_package(catkin REQUIRED)\n", True)])
+def test_build_file_of_ament_with_commands_of_catkin_built_nothing(repository, compare, find, is_breaking):
+    cmake = HEAD + INSTALL.format("ament_export_dependencies(rclcpp)")
+    old = cmake.replace(
+        "add_library", f"{find}catkin_install_python(PROGRAMS scripts/tool DESTINATION lib/arm)\nadd_library"
+    )
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": old, "arm/scripts/tool": ""})
+    repository.write({"arm/CMakeLists.txt": cmake})
+    result = compare(repository)
+    assert bool(breaking(result)) is is_breaking
+    failed = "the old version calls 'catkin_install_python' without catkin, so that its build fails"
+    assert (failed in sentences(subject(result, "arm/CMakeLists.txt"))) is not is_breaking

@@ -140,6 +140,84 @@ def test_argument_that_an_included_file_of_another_package_may_declare(repositor
     assert (expected in breaking(result)) == (expected == UNDECLARED)
 
 
+LATER = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def start_tools(context):
+    return []
+
+
+def generate_launch_description():
+    include = INCLUDE
+    return LaunchDescription([include, OpaqueFunction(function=start_tools)])
+"""
+
+
+@pytest.mark.parametrize(("package", "is_certain"), [("other", False), ("ros_gz_sim", True)])
+def test_include_below_the_action_in_python_may_start_before_it(repository, compare, package, is_certain):
+    old = LATER.replace("INCLUDE", SIMULATION.replace("PACKAGE", package))
+    repository.commit({PATH: old, "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")})
+    repository.write({PATH: old.replace("return []", f"return [{TOOL.replace('{name}', 'tool')}]")})
+    found = sentences(subject(compare(repository), PATH))
+    assert (UNDECLARED if is_certain else MAYBE_DECLARED) in found
+
+
+INNER = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("size", default_value="3"),
+        Node(package="arm", executable="arm", parameters=[{"size": LaunchConfiguration("size")}]),
+    ])
+"""
+OUTER = """<launch>
+  <arg name="size" default="{default}" />
+  <include file="$(find-pkg-share arm)/launch/inner.launch.py">
+    <arg name="size" value="$(var size)" />
+  </include>
+</launch>
+"""
+PASSED = '    <arg name="size" value="$(var size)" />\n'
+
+
+@pytest.mark.parametrize(
+    ("default", "replaced", "expected"),
+    [
+        ("3", PASSED, "argument 'size' removed: default 3; arm/launch/inner.launch.py declares it"),
+        (
+            "4",
+            PASSED,
+            "argument 'size' removed: default 4; arm/launch/inner.launch.py declares it with the default '3'",
+        ),
+        ("3", '"$(var size)"', None),
+    ],
+)
+def test_included_file_still_gets_a_value_that_the_outer_file_no_longer_declares(
+    repository, compare, default, replaced, expected
+):
+    path, text = "arm/launch/outer.launch.xml", OUTER.format(default=default)
+    inner = {"arm/launch/inner.launch.py": INNER, "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({path: text, **inner})
+    declared = f'  <arg name="size" default="{default}" />\n'
+    repository.write({path: text.replace(declared, "").replace(replaced, '"5"' if expected is None else "")})
+    result = compare(repository)
+    if expected is None:
+        assert breaking(result) == [f"argument 'size' removed: default {default}"]
+    else:
+        assert expected in sentences(subject(result, path))
+        assert breaking(result) == []
+
+
 GROUPS = """<launch>
   <group{scoped}>
     <include file="$(find-pkg-share other)/launch/other.launch.xml" />

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.review.conftest import sentences
+
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch_ros.actions import Node
@@ -183,3 +185,43 @@ def test_only_values_that_a_changed_statement_uses_are_other_code(review_changes
     new = text.replace("count = 1", "count = 2").replace(", output='screen'", "")
     found, _ = review_changes("arm.launch.py", text, text, new)
     assert found == ["other code: count = 1 -> count = 2"]
+
+
+CHOSEN = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def start(context):
+    size = LaunchConfiguration("size").perform(context)
+{branches}
+    return [Node(package="arm", executable="arm", parameters=[{{"file": f"config/{{file}}"}}])]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=start)])
+"""
+WRITTEN = """    if size == "2":
+        file = "two.yaml"
+    elif size == "3":
+        file = "three.yaml"
+    else:
+        file = "three.yaml"
+"""
+LEFT_OUT = """    file = "three.yaml"
+    if size == "3":
+        print("three")
+    elif size == "2":
+        file = "{}.yaml"
+"""
+
+
+@pytest.mark.parametrize(("name", "is_changed"), [("two", False), ("flat", True)])
+def test_branches_in_another_order_choose_the_same_values(repository, compare, name, is_changed):
+    path = "arm/launch/arm.launch.py"
+    repository.commit({path: CHOSEN.format(branches=WRITTEN)})
+    repository.write({path: CHOSEN.format(branches=LEFT_OUT.format(name))})
+    changed = [text for found in compare(repository).subjects for text in sentences(found) if "parameter file" in text]
+    assert bool(changed) is is_changed
+    assert all("three.yaml" in text and "flat.yaml" in text for text in changed)

@@ -47,6 +47,25 @@ def test_node_that_another_action_starts_is_not_missing(repository, compare, rep
     assert [sentence for sentence in breaking(compare(repository)) if sentence != unused] == expected
 
 
+SWITCHED = """<launch>
+  <arg name="gui" default="false"/>
+  <node pkg="joint_state_publisher" type="joint_state_publisher" name="joints" unless="$(arg gui)"/>
+  <node pkg="PACKAGE" type="PACKAGE" name="joints" if="$(arg gui)"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("package", "expected"),
+    [("joint_state_publisher_gui", []), ("arm_driver", ["argument 'gui': default false -> true"])],
+)
+def test_publisher_of_joint_states_with_a_window_is_no_missing_node(repository, compare, package, expected):
+    text = SWITCHED.replace("PACKAGE", package)
+    repository.commit({"arm/launch/arm.launch": text})
+    repository.write({"arm/launch/arm.launch": text.replace('"false"', '"true"')})
+    assert breaking(compare(repository)) == expected
+
+
 OPTIONS = """from argparse import ArgumentParser
 from launch import LaunchDescription
 from launch_ros.actions import Node
@@ -391,3 +410,12 @@ def test_simulated_time_by_default_without_a_simulation(repository, compare, pat
     repository.write({path: CLOCK.format(default="true", more=more)})
     reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
     assert reasons == ([CLOCK_REASON] if is_breaking else [])
+
+
+@pytest.mark.parametrize(("value", "is_changed"), [("True", False), ("false", True), ('"true"', True)])
+def test_boolean_parameter_in_another_notation_is_unchanged(repository, compare, value, is_changed):
+    text = '<launch><node pkg="arm" type="arm" name="arm"><param name="on" type="bool" value=\'{}\'/></node></launch>\n'
+    repository.commit({"arm/launch/arm.launch": text.format("true")})
+    repository.write({"arm/launch/arm.launch": text.format(value)})
+    changed = [sentence for found in compare(repository).subjects for sentence in sentences(found)]
+    assert bool(changed) is is_changed

@@ -87,6 +87,18 @@ def test_changed_names_in_sources_are_reported(repository, compare, path, old, n
     assert (path in result.other_files) is not expected
 
 
+@pytest.mark.parametrize(("topic", "is_breaking"), [("enable", True), ("/joint_states", False), ("tf", False)])
+def test_removed_subscription_of_a_common_topic_is_not_breaking(repository, compare, topic, is_breaking):
+    line = '        self.create_subscription(Bool, "enable", self.enable, 10)\n'
+    text = PYTHON.replace("enable", topic.strip("/")).replace(f'"{topic.strip("/")}"', f'"{topic}"')
+    removed = line.replace("enable", topic.strip("/")).replace(f'"{topic.strip("/")}"', f'"{topic}"')
+    assert removed in text
+    repository.commit({"arm/package.xml": FILES["arm/package.xml"], "arm/arm/driver.py": text})
+    repository.write({"arm/arm/driver.py": text.replace(removed, "")})
+    expected = [f"subscriptions removed: '{topic}' (Bool)"] if is_breaking else []
+    assert breaking(compare(repository)) == expected
+
+
 def test_name_that_moves_to_another_source_of_the_package_is_not_reported(repository, compare):
     repository.commit(FILES)
     line = "        self.state = self.create_publisher(String, TOPIC, 10)\n"

@@ -106,3 +106,21 @@ def test_other_names_and_comments_do_not_use_a_removed_package(repository, compa
     repository.commit(REMOVED)
     (change,) = subject(compare(repository, "HEAD~1..HEAD"), "arm_driver/package.xml").changes
     assert "still used" not in str(change.reason)
+
+
+@pytest.mark.parametrize(
+    ("files", "is_breaking"),
+    [
+        ({"driver/CMakeLists.txt": "project(driver)\nfind_package(ament_cmake REQUIRED)\n"}, False),
+        ({"driver/CMakeLists.txt": "project(driver)\nadd_executable(driver a.cpp)\n"}, True),
+        ({"driver/CMakeLists.txt": "find_package(ament_cmake REQUIRED)\n", "driver/package.xml": MANIFEST}, True),
+        ({}, True),
+    ],
+)
+def test_folder_with_a_build_file_but_no_manifest_offers_nothing(repository, compare, files, is_breaking):
+    path = "driver/config/arm.yaml"
+    repository.commit({**files, path: FILES["arm_driver/config/arm.yaml"]})
+    repository.write({path: None})
+    result = compare(repository)
+    assert any(sentence.startswith("parameter file removed") for sentence in sentences(subject(result, path)))
+    assert bool(breaking(result)) is is_breaking

@@ -61,3 +61,19 @@ def test_a_parameter_that_is_still_used_is_not_told(repository, compare, old, ne
     lines = [str(change.sentence) for change in review_texts(repository, compare, old, new, files)]
     assert lines
     assert not any("no longer used" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("code", "is_breaking"),
+    [
+        ('double rate{}; nh.param<double>("/rate", rate, 100);', False),
+        ('auto rate = node->declare_parameter("rate", 1.0); RCLCPP_INFO(log, "rate %f", rate);', False),
+        ('double rate; if (!nh.getParam("rate", rate)) return 1;', True),
+        ('double rate; nh.getParam("rate", rate); ros::Rate loop(rate);', True),
+        ('nh.getParam("rate", speed_);', True),
+    ],
+)
+def test_a_removed_parameter_that_nothing_used_breaks_nothing(repository, compare, code, is_breaking):
+    program = "int main(int argc, char ** argv) {{\n  ros::NodeHandle nh;\n  {}\n  ros::spin();\n}}\n"
+    changes = review_texts(repository, compare, program.format(code), program.format(""))
+    assert [change.reason is not None for change in changes if "parameter" in str(change.sentence)] == [is_breaking]

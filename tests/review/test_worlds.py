@@ -293,3 +293,30 @@ def test_world_that_takes_the_place_of_another_one_is_compared_with_it(repositor
                 "plugin 'drive' (filename=libgazebo_ros_diff_drive.so, ros remapping cmd_vel:=drive/cmd, topics 'odom')"
             )
         ]
+
+
+AXES = """    <model name="axes">
+      <static>1</static>
+      <link name="link"><visual name="r"><geometry><box><size>9 0.1 0.1</size></box></geometry></visual></link>
+    </model>
+"""
+
+
+@pytest.mark.parametrize(
+    ("part", "old", "is_breaking"),
+    [
+        ("", "", False),
+        ("<static>1</static>", "", True),
+        ('<visual name="r">', '<collision name="c"/><visual name="r">', True),
+        ('<pose relative_to="base">', '<pose relative_to="axes::link">', True),
+    ],
+)
+def test_removed_static_model_of_visuals_breaks_nothing(repository, compare, part, old, is_breaking):
+    text = WORLD.replace('    <model name="robot">\n', f'{AXES}    <model name="robot">\n')
+    text = text.replace(part, old)
+    repository.commit({PATH: text})
+    model = text[text.index('    <model name="axes">') : text.index('    <model name="robot">')]
+    repository.write({PATH: text.replace(model, "")})
+    result = compare(repository)
+    assert any(sentence.startswith("world yard model axes removed") for sentence in sentences(subject(result, PATH)))
+    assert any("axes" in sentence for sentence in breaking(result)) is is_breaking

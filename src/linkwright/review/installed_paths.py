@@ -18,6 +18,7 @@ from linkwright.xacro.cache import read_document
 
 _EXPORTED_FOLDER = re.compile(r"-I\$\{prefix\}/(?P<folder>[\w./-]+)")
 """A folder with headers in the compiler flags that a manifest of rosbuild exports."""
+_FINDS_BUILD_TOOL = re.compile(r"^[ \t]*find_package\s*\(\s*(?:ament_cmake|catkin)\b", re.IGNORECASE | re.MULTILINE)
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
@@ -33,6 +34,20 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     old_installed_paths = find_installed_paths(versions.old, old_package, old_path)
     return old_installed_paths is not None and old_installed_paths == find_installed_paths(
         versions.new, old_package, new_path
+    )
+
+
+def is_without_manifest(version: Version, path: str) -> bool:
+    """Return whether a file is in the folder of a build file of catkin or ament that has no manifest.
+
+    Such a folder is not a package, and its build fails, so that nothing of it is installed.
+    """
+    if version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None:
+        return False
+    return any(
+        _FINDS_BUILD_TOOL.search(version.text((parent / CMAKE_FILE).as_posix())) is not None
+        for parent in PurePosixPath(path).parents
+        if version.file((parent / CMAKE_FILE).as_posix()).is_file()
     )
 
 

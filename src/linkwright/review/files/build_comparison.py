@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase
 from linkwright.packages.manifest import MANIFEST
+from linkwright.review.changes import Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
 from linkwright.review.files.build_facts import (
@@ -36,6 +37,14 @@ _PATH_FOLDER = "bin"
 """The folder below the prefix that is in ``PATH``."""
 _PROGRAM_FOLDER_PREFIX = "lib/"
 """The start of the folders in which launch files find programs."""
+_CMAKE_COMMENT = re.compile(r"#[^\n]*")
+_CATKIN_COMMAND = re.compile(
+    r"^[ \t]*(?P<name>catkin_\w+|add_(?:message|service|action)_files|generate_messages)\s*\(", re.MULTILINE
+)
+_CATKIN_WORD = re.compile(
+    r"catkin|CATKIN|^[ \t]*(?:include|macro|function|if)\s*\(\s*(?!NOT CMAKE_|CMAKE_|BUILD_TESTING)", re.MULTILINE
+)
+"""A text with which a build file may find catkin, define the commands itself, or call them under a condition."""
 _CONDITIONAL_KINDS = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 
@@ -59,6 +68,20 @@ def compare_build_files(
         _compare_facts(pair, *facts)
         if compare_more is not None:
             compare_more(pair, *facts)
+        _drop_reasons_of_failed_build(pair)
+
+
+def _drop_reasons_of_failed_build(pair: FilePair) -> None:
+    """Tell that only the old build file of ament calls commands of catkin, which it does not find: it built nothing."""
+    if _CATKIN_COMMAND.search(pair.versions.new.text(pair.new_path)):
+        return
+    text = _CMAKE_COMMENT.sub("", pair.versions.old.text(pair.old_path))
+    command = _CATKIN_COMMAND.search(text)
+    if command is None or _CATKIN_WORD.search(_CATKIN_COMMAND.sub("", text)) or "ament_package" not in text:
+        return
+    pair.changes[:] = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+    sentence = phrase("the old version calls '{name}' without catkin, so that its build fails", name=command["name"])
+    pair.changes.append(Change(sentence))
 
 
 def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import MAX_NAMES, Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 
 _HEADERS = "include/"
+_EXPORTED_DESCRIPTION = re.compile(r"\bplugin\s*=\s*[\"']\$\{prefix\}/([\w./-]+)[\"']")
+"""The description of plugins that a manifest exports. pluginlib finds the file by this entry."""
 _MIN_FOLDERS = 3
 """The minimum number of folders with the same change of their destination that share a line."""
 
@@ -22,7 +26,9 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
     new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
     names_of_packages = PackageNames(find_renamed_packages(pair.versions))
     is_renamed_package = old.project != new.project
+    exported = _EXPORTED_DESCRIPTION.findall(pair.versions.new.text(f"{new.package}/{MANIFEST}".lstrip("/")))
     moved: dict[tuple[str, str], list[str]] = {}
+    moved_with_export: dict[tuple[str, str], list[str]] = {}
     removed: list[str] = []
     renamed_headers: list[str] = []
     for source, target in old_sources.items():
@@ -40,7 +46,8 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         ):
             folders = _get_folder(target), _get_folder(new_target)
             is_renamed = folders[0] == folders[1]
-            moved.setdefault(folders, []).append(
+            is_exported = new_target.removeprefix(f"share/{new.project}/") in exported
+            (moved_with_export if is_exported else moved).setdefault(folders, []).append(
                 f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
             )
         elif (
@@ -54,7 +61,8 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         known = {names_of_packages.rename_derived(target) for target in old.files}
         known |= {new_sources[source] for source in new_sources_by_old.values() if source in new_sources}
         added = [target for target in added if target not in known]
-    _report_moved_files(pair, moved)
+    _report_moved_files(pair, moved, phrase("programs that look for the files do not find them"))
+    _report_moved_files(pair, moved_with_export, None)
     if renamed_headers:
         text = phrase("headers renamed: {names}", names=list_names(renamed_headers))
         pair.add(text, None, phrase("code of other packages that includes them does not build"))
@@ -88,7 +96,7 @@ def _keeps_include_text(source: str, old: Collection[str], new: Collection[str])
     return bool(old) and (set(new).issuperset(old) or (own_text in new and own_text not in old))
 
 
-def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:
+def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]], reason: Phrase | None) -> None:
     """Report installed files with a different destination, by their old and new folders.
 
     Folders that are in another folder together, with the same paths in it, share a line.
@@ -98,7 +106,6 @@ def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence
         old_base, new_base, inner = _split_moved_folder(*folders)
         groups.setdefault((old_base, new_base), {})[inner] = len(names)
     groups = {bases: counts for bases, counts in groups.items() if len(counts) >= _MIN_FOLDERS and all(bases)}
-    reason = phrase("programs that look for the files do not find them")
     for (old_base, new_base), counts in groups.items():
         items = [
             counted("{folder} with {count} file", "{folder} with {count} files", count, folder=f"'{folder or '.'}/'")

@@ -58,6 +58,8 @@ _WORLD_SUFFIX = ".world"
 _NAMED_TAGS = ("world", "model", "include", "link", "joint", "sensor", "frame")
 _NAMED_ELEMENT = re.compile(rf"(?:^|.* )(?P<tag>{'|'.join(_NAMED_TAGS)}) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
+_USED_TAGS = frozenset({"collision", "sensor", "joint", "plugin", "include", "frame", "light"})
+"""The parts of a static model that other programs and models use. A model of visuals only can be seen in the window."""
 _MODEL_PATH = re.compile(r"(?:world \S+ )?(?:model|include) (?P<name>\S+)")
 """The path of a model of a world."""
 _STATE_PATH = re.compile(r"(?:world \S+ )?state (?:\S+ )?model (?P<name>\S+)")
@@ -354,7 +356,7 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str], element
         or may_be_equal(difference.old, difference.new)
     ):
         return None
-    named = _find_lost_name(difference, path)
+    named = None if _is_unused_decoration(difference, elements) else _find_lost_name(difference, path)
     if named is not None and not (named[0] == "include" and "/" in named[1]):
         return _make_name_reason(*named)
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
@@ -369,6 +371,30 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str], element
     is_used = "plugin " in difference.property or "sensor" in difference.property
     reason = find_plugin_name_reason(difference) if is_used else None
     return reason or find_default_topic_reason(difference, elements)
+
+
+def _is_unused_decoration(difference: Difference, elements: Sequence[Element]) -> bool:
+    """Return whether a difference is a removed static model that only has visuals, and that the new version ignores.
+
+    Args:
+        difference: the difference between both versions.
+        elements: the elements of the new version.
+    """
+    model = difference.element if is_removed(difference) else None
+    if model is None or model.tag != "model" or not model.attributes.get("name"):
+        return False
+    parts = list(model.walk())
+    is_static = any(part.text().strip() in ("1", "true") for part in model.elements("static"))
+    if not is_static or any(part.tag in _USED_TAGS for part in parts):
+        return False
+    name = model.attributes["name"]
+    words = (
+        word
+        for root in elements
+        for element in root.walk()
+        for word in (element.text().strip(), *element.attributes.values())
+    )
+    return not any(word.partition("::")[0] == name for word in words)
 
 
 def _find_lost_name(difference: Difference, path: str) -> tuple[str, str] | None:

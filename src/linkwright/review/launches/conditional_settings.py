@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.expressions import are_equal_expressions
-from linkwright.review.launches.outlines import Entry, LaunchOutline, extract_condition, without_condition
+from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline, extract_condition, without_condition
 
 _INLINE_DEFAULT = re.compile(r"(\$\((?:var|arg) [^() ]+) [^()]*\)")
 """An argument of a launch file with its default."""
@@ -16,6 +16,7 @@ _INLINE_NAME = re.compile(r"\$\((?:var|arg) ([^() ]+) [^()]*\)")
 """The name of such an argument."""
 _ROS1_SUBSTITUTION = re.compile(r"\$\((?P<kind>find|arg) ")
 _ROS2_SUBSTITUTIONS = {"find": "$(find-pkg-share ", "arg": "$(var "}
+_BOOLEAN_VALUE = re.compile(r"[Tt]rue|[Ff]alse")
 _BOOLEAN = re.compile(r"\b(True|False)\b")
 
 
@@ -55,6 +56,7 @@ def find_changed_settings(
             for key in dict.fromkeys([*new_values, *old_values]):
                 before, after = old_values.get(key), new_values.get(key)
                 is_same = are_equal_expressions(before, after) or keeps_meaning(before, after, old_outline, new_outline)
+                is_same = is_same or (key.startswith(PARAMETER) and _are_equal_booleans(before, after))
                 if before != after and not is_same:
                     yield SettingPair(key, before, after, before, after)
             continue
@@ -82,6 +84,12 @@ def keeps_meaning(old: str | None, new: str | None, old_outline: LaunchOutline, 
     texts = (outline.resolve(text) for outline, text in ((old_outline, old), (new_outline, new)))
     before, after = (_BOOLEAN.sub(lambda match: match[0].lower(), text) for text in texts)
     return before == after
+
+
+def _are_equal_booleans(old: str | None, new: str | None) -> bool:
+    return all(text is not None and _BOOLEAN_VALUE.fullmatch(text) for text in (old, new)) and (
+        (old or "").lower() == (new or "").lower()
+    )
 
 
 def _write_for_ros2(text: str) -> str:

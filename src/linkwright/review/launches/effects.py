@@ -492,8 +492,21 @@ def _find_default_reason(
 
 def _starts_elsewhere(entry: Entry, outline: LaunchOutline) -> bool:
     """Return whether another action starts the same program or includes the same file by default."""
-    return any(
+    return is_other_joint_state_publisher_started(entry.name, outline) or any(
         (other.kind, other.name, other.settings.get("name")) == (entry.kind, entry.name, entry.settings.get("name"))
+        and evaluate_condition(_resolve_condition(other, outline)) is not False
+        for other in outline.entries
+    )
+
+
+def is_other_joint_state_publisher_started(program: str, outline: LaunchOutline) -> bool:
+    """Return whether a program publishes the positions of joints, and another such program starts by default.
+
+    One of them has a window.
+    """
+    return program.startswith(_JOINT_STATE_PREFIX) and any(
+        other.name.startswith(_JOINT_STATE_PREFIX)
+        and other.name != program
         and evaluate_condition(_resolve_condition(other, outline)) is not False
         for other in outline.entries
     )

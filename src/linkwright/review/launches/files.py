@@ -279,6 +279,14 @@ def _report_unpaired_entries(
         if _is_unused_argument(pair, entry, old_included.outline):
             pair.add(phrase("{change}; the file did not use it", change=text), location)
             continue
+        declaration = new_included.find_declaration(entry.name) if entry.kind == "argument" else None
+        if declaration is not None:
+            path, default = declaration
+            text = phrase("{change}; {file} declares it", change=text, file=path)
+            if default is not None and default != entry.settings.get("default"):
+                text = phrase("{change} with the default '{value}'", change=text, value=default)
+            pair.add(text, location)
+            continue
         if _is_still_read(pair, entry, new_included.outline):
             text = phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
             pair.add(text, location)

@@ -23,6 +23,7 @@ from linkwright.review.launches.matching import get_launch_file_stem
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import find_served_names
+from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
 
 _ARGUMENT = re.compile(r"\$\((?:var|arg) ")
@@ -271,7 +272,7 @@ class IncludedActions:
             used = [name for text in (entry.name, *entry.settings.values()) for name in _USED_ARGUMENT.findall(text)]
             missing = sorted(self._find_missing_arguments(entry, depth))
             for name in (*used, *missing):
-                may_be_declared = any(_may_declare(include, name, entry) for include in unknown_includes)
+                may_be_declared = any(self._may_declare(include, name, entry) for include in unknown_includes)
                 is_certain = not may_be_declared or (name in defaulted and name in used)
                 if name not in declared and (name not in undeclared or is_certain > undeclared[name].is_certain):
                     undeclared[name] = UndeclaredArgument(entry, is_certain)
@@ -319,6 +320,27 @@ class IncludedActions:
                 return True
         return False
 
+    def find_declaration(self, name: str) -> tuple[str, str | None] | None:
+        """Return an included file of ROS 2 that declares and uses an argument which the include does not set, or None.
+
+        The file gets the value of the callers of the launch file. It comes with the default of the argument.
+        """
+        for include in self.outline.entries:
+            holds = evaluate_condition(self.outline.resolve(include.settings.get(CONDITION, "")))
+            if include.kind != "include" or holds is False or name in map(without_condition, include.settings):
+                continue
+            file = self.find_included_file(include, self.file)
+            outline = None if file is None else self._read_outline(file)
+            path = None if file is None else self._version.relative(file)
+            if file is None or outline is None or path is None or outline.is_ros1 or self.outline.is_ros1:
+                continue
+            declaration = next(
+                (entry for entry in outline.entries if entry.kind == "argument" and entry.name == name), None
+            )
+            if declaration is not None and uses_argument(file, name, outline.entries):
+                return path, declaration.settings.get("default")
+        return None
+
     def passes_to_unknown_file(self, name: str) -> bool:
         """Return whether the launch file passes the value of an argument to a file outside of the repository."""
         includes = [entry for entry in self.outline.entries if entry.kind == "include"]
@@ -329,19 +351,20 @@ class IncludedActions:
             if setting != CONDITION
         )
 
+    def _may_declare(self, include: Entry, name: str, user: Entry) -> bool:
+        """Return whether a file outside of the repository may declare an argument that a later action uses.
+
+        A file that a group includes declares arguments only for the actions of the group. In Python, the order of the
+        lines does not tell the order of the actions.
+        """
+        known = find_known_arguments(include.name)
+        is_around = user.groups[: len(include.groups)] == include.groups
+        is_before = include.span.line < user.span.line or (include is not user and self.file.suffix == PYTHON_SUFFIX)
+        return is_before and is_around and (known is None or name in known)
+
     def _is_unknown(self, include: Entry) -> bool:
         resolved = replace(include, name=self.outline.resolve(include.name))
         return self.find_included_file(resolved, self.file) is None
-
-
-def _may_declare(include: Entry, name: str, user: Entry) -> bool:
-    """Return whether a file outside of the repository may declare an argument that a later action uses.
-
-    A file that a group includes declares arguments only for the actions of the group.
-    """
-    known = find_known_arguments(include.name)
-    is_around = user.groups[: len(include.groups)] == include.groups
-    return include.span.line < user.span.line and is_around and (known is None or name in known)
 
 
 def _name_callers_variables(value: str, passed: Collection[str]) -> str:

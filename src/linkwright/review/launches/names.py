@@ -56,8 +56,26 @@ class LaunchPythonFile(PythonFile):
             if start <= node.lineno <= end and node.id in bindings:
                 latest = max(earlier, key=lambda binding: binding.line) if earlier else None
                 is_certain = latest is not None and latest.block[0] <= node.lineno <= latest.block[1]
-                return latest.value if latest is not None and is_certain else None
+                return self._fill(latest.value, node.id) if latest is not None and is_certain else None
         return None
+
+    def _fill(self, value: ast.expr | None, name: str) -> ast.expr | None:
+        """Return the value that an ``if`` statement chooses, with the earlier literal where no branch sets the name.
+
+        The branches of tests for different texts have one order, and those with the last value are left out.
+        """
+        if value is None or not is_chosen_value(value):
+            return value
+        if id(value) not in self._filled:
+            earlier = self.resolved(ast.copy_location(ast.Name(name, ast.Load()), value))
+            filled = _fill_branches(value, name, earlier) if isinstance(earlier, ast.Constant) else value
+            self._filled[id(value)] = value, _sort_branches(filled)
+        return self._filled[id(value)][1]
+
+    @cached_property
+    def _filled(self) -> dict[int, tuple[ast.expr, ast.expr]]:
+        """The chosen values with their filled forms, by the identity of the former."""
+        return {}
 
     @cached_property
     def _scopes(self) -> list[tuple[int, int, dict[str, list[_Binding]]]]:
@@ -69,6 +87,45 @@ class LaunchPythonFile(PythonFile):
         scopes = [(node.lineno, node.end_lineno or node.lineno, _collect_bindings(node)) for node in functions]
         scopes.sort(key=lambda scope: scope[1] - scope[0])
         return [*scopes, (0, len(self.source.text), _collect_bindings(self.tree))]
+
+
+def _fill_branches(value: ast.expr, name: str, earlier: ast.expr) -> ast.expr:
+    if isinstance(value, ast.Name) and value.id == name:
+        return earlier
+    if not isinstance(value, ast.IfExp) or not is_chosen_value(value):
+        return value
+    branches = [_fill_branches(branch, name, earlier) for branch in (value.body, value.orelse)]
+    return _make_choice(value, value.test, *branches)
+
+
+def _make_choice(location: ast.expr, test: ast.expr, body: ast.expr, other: ast.expr) -> ast.expr:
+    choice = ast.copy_location(ast.IfExp(test, body, other), location)
+    setattr(choice, _CHOSEN_MARK, True)
+    return choice
+
+
+def _sort_branches(value: ast.expr) -> ast.expr:
+    """Return a choice by texts in the order of the texts; other values are unchanged."""
+    branches: dict[str, tuple[ast.expr, ast.expr]] = {}
+    last, subjects = value, set()
+    while isinstance(last, ast.IfExp) and is_chosen_value(last):
+        test = last.test
+        if not isinstance(test, ast.Compare) or len(test.ops) != 1 or not isinstance(test.ops[0], ast.Eq):
+            return value
+        text = test.comparators[0]
+        if not isinstance(text, ast.Constant) or not isinstance(text.value, str):
+            return value
+        subjects.add(ast.unparse(test.left))
+        branches.setdefault(text.value, (test, last.body))
+        last = last.orelse
+    if len(subjects) != 1:
+        return value
+    result, other = last, ast.unparse(last)
+    for text_value in sorted(branches, reverse=True):
+        test, body = branches[text_value]
+        if ast.unparse(body) != other:
+            result = _make_choice(value, test, body, result)
+    return result
 
 
 def _collect_bindings(scope: ast.AST) -> dict[str, list[_Binding]]:

@@ -15,7 +15,11 @@ from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.default_names import find_default_name
-from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
+from linkwright.review.launches.effects import (
+    explain_argument_removal,
+    find_setting_reason,
+    is_other_joint_state_publisher_started,
+)
 from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import STARTING_KINDS, IncludedActions, Program, find_including_files
@@ -288,7 +292,8 @@ class SettingChanges:
             started = self._included.count_all_started_programs()
             stopped = self._included.count_all_started_programs({entry.name: old}) - started
             stopped &= self._old_included.count_all_started_programs() - started
-            return _explain_stopped_programs(stopped) if stopped else None
+            missing = [each for each in stopped if not is_other_joint_state_publisher_started(each[1], self._new)]
+            return _explain_stopped_programs(missing) if missing else None
         return reason
 
     def _list_names(self) -> list[str]:

@@ -18,6 +18,8 @@ _OTHER_NODES = frozenset(
     {"move_group", "move_base", "amcl", "gazebo", "controller_manager", "robot_state_publisher", "map_server"}
 )
 """The usual names of nodes of common packages. Other first words of parameters may be namespaces without a node."""
+_COMMON_TOPICS = frozenset({"clock", "diagnostics", "joint_states", "parameter_events", "rosout", "tf", "tf_static"})
+"""Topics that many nodes read. Nothing publishes them for one subscription."""
 _HEADER_FOLDER = "include"
 
 
@@ -53,6 +55,8 @@ def find_removal_reason(
     kind = items[0].kind
     if kind is NameKind.PARAMETER:
         items = [item for item in items if not _belongs_to_other_node(item, names)]
+    if kind is NameKind.SUBSCRIPTION:
+        items = [item for item in items if item.name.lstrip("/") not in _COMMON_TOPICS]
     if kind is NameKind.NODE:
         items = [item for item in items if item.name not in names.helper_nodes]
     if not items or kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):

@@ -1,9 +1,9 @@
-"""Find parameters that a C++ source still reads but whose values nothing uses any more."""
+"""Find parameters that a C++ source reads although nothing uses their values."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.new_failures import find_read_parameters
@@ -22,6 +22,41 @@ _TYPE = (
     r"(?:double|float|int|bool|size_t|long|short|unsigned|(?:std::)?u?int\d+_t|(?:std::)?size_t|(?:std::)?string|"
     r"(?:std::)?vector\s*<[^;{}()]*>)\s*"
 )
+_STATEMENT = (
+    rf"[;{{}}]\s*(?:(?:[\w:]+\s+)*\w+\s*=\s*)?(?:\w+\s*(?:\.|->|::)\s*)*\w*[pP]aram\w*\s*{_TEMPLATE}\(\s*\"[~/.]*%s\""
+)
+"""The beginning of a statement that only reads or declares a parameter, with a place for its name."""
+
+
+def is_read_without_use(text: str, others: Iterable[str], name: str, *, is_header: bool) -> bool:
+    """Return whether a source only reads a parameter into variables, and nothing uses their values.
+
+    Other sources use only the variables that a header declares. One that no file declares may belong to a class of
+    another package, which may use it.
+
+    Args:
+        text: the text of the source.
+        others: the texts of the other sources and headers of the package.
+        name: the name of the parameter.
+        is_header: whether the source is a header.
+    """
+    text, name = blank_comments(text), name.lstrip("~/")
+    variables = _find_variables(text).get(name, set())
+    statements = re.findall(_STATEMENT % re.escape(name), text)
+    if not variables or len(statements) != len(re.findall(rf"\"[~/.]*{re.escape(name)}\"", text)):
+        return False
+    members = variables if is_header else {variable for variable in variables if not _declares(text, variable)}
+    texts = [other for other in others if any(_names(other, member) for member in members)] if members else []
+    return not any(
+        _is_used(text, variable)
+        or not any(_declares(other, variable) for other in (text, *texts))
+        or (variable in members and any(_is_used(blank_comments(other), variable) for other in texts))
+        for variable in variables
+    )
+
+
+def _declares(text: str, variable: str) -> bool:
+    return re.search(rf"(?<![\w:<])(?:{_TYPE}|auto\s+){variable}\b", text) is not None
 
 
 def find_unused_parameters(

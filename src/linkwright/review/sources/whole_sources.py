@@ -14,7 +14,13 @@ from linkwright.review.installed_paths import find_include_text, is_exported_hea
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.cpp_text import blank_comments
 from linkwright.review.sources.enumerators import compare_enumerations
-from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
+from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
+    HEADER_SUFFIXES,
+    PYTHON_SUFFIX,
+    NameKind,
+    SourceNames,
+)
 from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
 from linkwright.review.sources.node_options import find_executor_change, find_option_changes
 from linkwright.review.sources.package_imports import (
@@ -35,7 +41,7 @@ from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.unread_parameters import is_only_declared
-from linkwright.review.sources.unused_parameters import find_unused_parameters
+from linkwright.review.sources.unused_parameters import find_unused_parameters, is_read_without_use
 from linkwright.review.sources.used_packages import compare_usage
 
 
@@ -94,18 +100,21 @@ class WholeSourcePair:
         return package is not None and is_exported_header(side.version, package, path)
 
     def is_unread_parameter(self, name: str) -> bool:
-        """Return whether the old source only declares a parameter, so that its values had no effect."""
+        """Return whether the old source declares or reads a parameter without using it, so that it had no effect."""
         path = self.file.old_path or ""
         package = self.old.find_package(path) if path else None
         if package is None:
             return False
         version = self.old.version
-        others = (
+        others = [
             version.text(other)
             for other in version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), package)
             if other != path and not are_in_separate_programs(version, package, path, [other])
-        )
-        return is_only_declared(version.text(path), others, name, is_python=path.endswith(PYTHON_SUFFIX))
+        ]
+        text, is_python = version.text(path), path.endswith(PYTHON_SUFFIX)
+        if is_only_declared(text, others, name, is_python=is_python):
+            return True
+        return not is_python and is_read_without_use(text, others, name, is_header=path.endswith(HEADER_SUFFIXES))
 
     def can_be_linked(self, name: str, kind: NameKind = NameKind.FUNCTION) -> bool:
         """Return whether other packages can use a function, class or member of the old source.
