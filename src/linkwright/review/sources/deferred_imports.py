@@ -8,8 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.reading import try_parse_versions
 
 _IMPORT_FUNCTIONS = ("import_module", "importlib.import_module", "__import__")
 _Imports = dict[str, "ast.expr | ast.stmt"]
@@ -24,11 +23,9 @@ def find_deferred_imports(old_path: Path, new_path: Path) -> Iterator[tuple[Phra
         old_path: the old source.
         new_path: the new source.
     """
-    sources = [try_read_source(path) for path in (old_path, new_path)]
-    try:
-        old, new = (parse_source(source) for source in sources if source is not None)
-    except (ValueError, SyntaxError, RecursionError):
+    if (parsed := try_parse_versions(old_path, new_path)) is None:
         return
+    old, new = parsed
     (old_first, old_later), (new_first, new_later) = (_read_imports(python) for python in (old, new))
     deferred = [name for name in old_first if name in new_later and name not in new_first]
     moved = [name for name in old_later if name in new_first and name not in old_first]

@@ -6,11 +6,12 @@ import re
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.cpp import read_cpp
 from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, SourceNames
-from linkwright.review.sources.python import read_dynamic_parameters, read_python
+from linkwright.review.sources.python import parse_source, read_dynamic_parameters, read_python
 
 _MAX_BYTES = 1 << 20
 _MAX_SOURCES = 4096
@@ -49,6 +50,16 @@ def try_read_text(path: Path) -> str | None:
         return None if path.stat().st_size > _MAX_BYTES else path.read_text("utf-8-sig", errors="replace")
     except OSError:
         return None
+
+
+def try_parse_versions(old_path: Path, new_path: Path) -> tuple[PythonFile, PythonFile] | None:
+    """Return both versions of a Python source, or None if one of them cannot be read."""
+    sources = [try_read_source(path) for path in (old_path, new_path)]
+    try:
+        old, new = (parse_source(source) for source in sources if source is not None)
+    except (ValueError, SyntaxError, RecursionError):
+        return None
+    return old, new
 
 
 @cached_in_review(maxsize=_MAX_SOURCES)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.sources.parameter_defaults import find_declarations, get_name_argument
-from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.reading import try_parse_versions
 
 _READERS = ("get_param", "get_parameter", "get_parameter_or", "declare_parameter")
 _CONVERSIONS = ("bool", "float", "int", "str")
@@ -24,11 +23,9 @@ def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phr
         old_path: the old source.
         new_path: the new source.
     """
-    sources = [try_read_source(path) for path in (old_path, new_path)]
-    try:
-        old, new = (parse_source(source) for source in sources if source is not None)
-    except (ValueError, SyntaxError, RecursionError):
+    if (parsed := try_parse_versions(old_path, new_path)) is None:
         return
+    old, new = parsed
     literals = {key: values[0] for key, values in _read_assignments(old).items() if len(values) == 1}
     for key, values in _read_assignments(new).items():
         literal = literals.get(key)
@@ -85,38 +82,31 @@ def _find_replaced_arguments(old: PythonFile, new: PythonFile) -> Iterator[tuple
 def _read_calls(python: PythonFile) -> dict[tuple[str, str], list[ast.Call]]:
     """Return the calls in each function, by its name and that of the called function."""
     calls: dict[tuple[str, str], list[ast.Call]] = {}
-
-    def read(body: list[ast.stmt], scope: str) -> None:
-        for node in body:
-            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                read(node.body, f"{scope}.{node.name}")
-                continue
-            for part in ast.walk(node):
-                if isinstance(part, ast.Call) and scope:
-                    calls.setdefault((scope, called_name(part)), []).append(part)
-
-    read(python.tree.body, "")
+    for scope, node in _walk(python.tree.body):
+        if isinstance(node, ast.Call) and scope:
+            calls.setdefault((scope, called_name(node)), []).append(node)
     return calls
 
 
 def _read_assignments(python: PythonFile) -> dict[tuple[str, str], list[ast.expr]]:
     """Return the expressions that each function assigns to each variable and attribute."""
     assignments: dict[tuple[str, str], list[ast.expr]] = {}
-
-    def read(body: list[ast.stmt], scope: str) -> None:
-        for node in body:
-            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                read(node.body, f"{scope}.{node.name}")
-                continue
-            for part in ast.walk(node):
-                if isinstance(part, ast.Assign):
-                    for target in part.targets:
-                        assignments.setdefault((scope, ast.unparse(target)), []).append(part.value)
-                elif isinstance(part, (ast.AugAssign, ast.AnnAssign)) and part.value is not None:
-                    assignments.setdefault((scope, ast.unparse(part.target)), []).append(part.value)
-
-    read(python.tree.body, "")
+    for scope, node in _walk(python.tree.body):
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                assignments.setdefault((scope, ast.unparse(target)), []).append(node.value)
+        elif isinstance(node, (ast.AugAssign, ast.AnnAssign)) and node.value is not None:
+            assignments.setdefault((scope, ast.unparse(node.target)), []).append(node.value)
     return assignments
+
+
+def _walk(body: Iterable[ast.stmt], scope: str = "") -> Iterator[tuple[str, ast.AST]]:
+    """Yield all nodes of statements, each with the names of the functions and classes around it."""
+    for statement in body:
+        if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            yield from _walk(statement.body, f"{scope}.{statement.name}")
+        else:
+            yield from ((scope, node) for node in ast.walk(statement))
 
 
 def _find_read(node: ast.expr) -> ast.Call | None:
