@@ -312,13 +312,12 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
 
 
 @pytest.mark.parametrize(
-    ("commands", "expected_position"),
-    [("velocity", 0.5), ("velocity effort", 0.0)],
-    ids=["only velocities are commanded", "efforts are commanded too"],
+    ("wheel", "steering", "expected_position"),
+    [("velocity", "velocity", 0.5), ("velocity", "position", 0.5), ("velocity effort", "position", 0.0)],
 )
-async def test_mock_in_place_of_driver_integrates_velocities_of_wheels(graph, commands, expected_position):
-    text = robot(joint("hip", commands) + joint("knee", commands)).replace("mock_components/GenericSystem", "acme/Base")
-    parameters = {"type": FORWARD, "joints": ["hip", "knee"], "interface_name": "velocity"}
+async def test_mock_in_place_of_driver_integrates_velocities_of_wheels(graph, wheel, steering, expected_position):
+    text = robot(joint("hip", wheel) + joint("knee", steering)).replace("mock_components/GenericSystem", "acme/Base")
+    parameters = {"type": FORWARD, "joints": ["hip"], "interface_name": "velocity"}
     manager = make_manager(graph, text, {"wheels.type": FORWARD}, wheels=parameters)
     assert manager.load("wheels")
     assert manager.configure("wheels")

@@ -11,7 +11,14 @@ from typing import TypeVar
 
 from linkwright.control.hardware.component import Hardware, hardware_class
 from linkwright.control.hardware.description import HardwareDescription
-from linkwright.control.hardware.interfaces import VELOCITY, CommandInterface, Interface, Interfaces, StateInterface
+from linkwright.control.hardware.interfaces import (
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    Interface,
+    Interfaces,
+    StateInterface,
+)
 from linkwright.control.hardware.mock import GenericSystem
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
@@ -305,9 +312,10 @@ def _describe_error(error: Exception) -> str:
 def _describe_replacement(description: HardwareDescription) -> HardwareDescription:
     """Return the description of the mock that replaces unsupported hardware.
 
-    If all commands to its joints are velocities, as those to wheels are, the mock integrates them to positions.
+    If each joint has a single command, a position or a velocity, as steering joints and wheels have, the mock
+    integrates the velocities to positions.
     """
-    command_kinds = {command.name for joint in description.joints for command in joint.commands}
-    if command_kinds != {VELOCITY}:
+    commands = [{command.name for command in joint.commands} for joint in description.joints if joint.commands]
+    if {VELOCITY} not in commands or any(kinds not in ({POSITION}, {VELOCITY}) for kinds in commands):
         return description
     return replace(description, parameters={_DYNAMICS: "true", **description.parameters})
