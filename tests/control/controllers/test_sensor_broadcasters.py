@@ -65,6 +65,14 @@ async def test_wrench_is_published(bench):
     assert (wrenches[0].header.frame_id, wrenches[0].wrench.force.y, wrenches[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
 
 
+async def test_filter_chain_of_wrench_is_reported_once_as_not_supported(bench, logged):
+    bench.joint("tcp", **dict.fromkeys(WRENCH, 1.0))
+    low_pass = {"name": "low_pass", "type": "control_filters/LowPassFilterWrench", "params": {"damping_intensity": 5.0}}
+    bench.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0", sensor_filter_chain={"filter1": low_pass})
+    (warning,) = logged("WARN")
+    assert warning.startswith("'sensor_filter_chain' is not supported, so the wrench is not filtered")
+
+
 async def test_wrench_axes_can_be_renamed_or_missing(bench):
     bench.joint("cell", pull=3.0, twist=4.0)
     broadcaster = bench.start(

@@ -15,11 +15,13 @@ from typing import Any, ClassVar, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.graph import ParameterDescriptor
 from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, from_values, get_message
 from linkwright.nodes.parameter_tables import at_least, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _UNKNOWN_COVARIANCE = (0.0,) * 9
+_FILTER_CHAIN = "sensor_filter_chain"
 
 
 def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
@@ -264,6 +266,20 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
 
     PARAMETERS = WrenchParameters
     TYPE, TOPIC = "geometry_msgs/msg/WrenchStamped", "~/wrench"
+
+    def declare_parameters(self) -> None:
+        """Declare the parameters of the filter chain, and warn that it is not used."""
+        node = self.node.graph_node
+        filter_parameters = [name for name in node.undeclared_overrides() if name.startswith(f"{_FILTER_CHAIN}.")]
+        for name in filter_parameters:
+            node.declare_parameter(name, descriptor=ParameterDescriptor(dynamic_typing=True))
+        if filter_parameters:
+            message = phrase(
+                "'{parameter}' is not supported, so the wrench is not filtered, and '{topic}' is not published",
+                parameter=_FILTER_CHAIN,
+                topic="~/wrench_filtered",
+            )
+            self.node.logger.warning(message)
 
     def on_configure(self) -> None:
         """Determine the interface of each axis, and create the publisher.

@@ -6,11 +6,19 @@ Source: the resource manager of ros2_control (rules and messages).
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from linkwright.control.hardware.component import Hardware, hardware_class
 from linkwright.control.hardware.description import HardwareDescription
-from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
+from linkwright.control.hardware.interfaces import (
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    Interface,
+    Interfaces,
+    StateInterface,
+)
 from linkwright.control.hardware.mock import GenericSystem
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
@@ -18,6 +26,8 @@ from linkwright.graph.log.logger import Logger
 
 HardwareFactory = Callable[[HardwareDescription, Logger], "Hardware | None"]
 """A function that creates the hardware of a description, or returns None if the type is not supported."""
+
+_DYNAMICS = "calculate_dynamics"
 
 N = TypeVar("N", bound=Interface)
 
@@ -77,7 +87,7 @@ class Resources:
                         plugin=description.plugin,
                     )
                 )
-                hardware = GenericSystem(description, self._logger)
+                hardware = GenericSystem(_describe_replacement(description), self._logger)
             if description.is_async:
                 self._logger.info(
                     phrase(
@@ -297,3 +307,15 @@ def _describe_error(error: Exception) -> str:
     if isinstance(error, LinkwrightError):
         return str(error.diagnostics[0].message)
     return f"{type(error).__name__}: {error}"
+
+
+def _describe_replacement(description: HardwareDescription) -> HardwareDescription:
+    """Return the description of the mock that replaces unsupported hardware.
+
+    If each joint has a single command, a position or a velocity, as steering joints and wheels have, the mock
+    integrates the velocities to positions.
+    """
+    commands = [{command.name for command in joint.commands} for joint in description.joints if joint.commands]
+    if {VELOCITY} not in commands or any(kinds not in ({POSITION}, {VELOCITY}) for kinds in commands):
+        return description
+    return replace(description, parameters={_DYNAMICS: "true", **description.parameters})
