@@ -4,28 +4,23 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.sources.reading import try_parse_versions
 
 _IMPORT_FUNCTIONS = ("import_module", "importlib.import_module", "__import__")
 _Imports = dict[str, "ast.expr | ast.stmt"]
 
 
-def find_deferred_imports(old_path: Path, new_path: Path) -> Iterator[tuple[Phrase, Span]]:
+def find_deferred_imports(old: PythonFile, new: PythonFile) -> Iterator[tuple[Phrase, Span]]:
     """Yield the sentences about the modules that move between the beginning of a source and its functions.
 
     A source that imports a module only in functions can be loaded without the module.
 
     Args:
-        old_path: the old source.
-        new_path: the new source.
+        old: the old source.
+        new: the new source.
     """
-    if (parsed := try_parse_versions(old_path, new_path)) is None:
-        return
-    old, new = parsed
     (old_first, old_later), (new_first, new_later) = (_read_imports(python) for python in (old, new))
     deferred = [name for name in old_first if name in new_later and name not in new_first]
     moved = [name for name in old_later if name in new_first and name not in old_first]

@@ -4,28 +4,23 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.sources.parameter_defaults import find_declarations, get_name_argument
-from linkwright.review.sources.reading import try_parse_versions
 
 _READERS = ("get_param", "get_parameter", "get_parameter_or", "declare_parameter")
 _CONVERSIONS = ("bool", "float", "int", "str")
 _MAX_DEPTH = 6
 
 
-def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phrase, Span]]:
+def find_replaced_literals(old: PythonFile, new: PythonFile) -> Iterator[tuple[Phrase, Span]]:
     """Yield the variables and calls that had a literal and get a parameter now, whose default has another value.
 
     Args:
-        old_path: the old source.
-        new_path: the new source.
+        old: the old source.
+        new: the new source.
     """
-    if (parsed := try_parse_versions(old_path, new_path)) is None:
-        return
-    old, new = parsed
     literals = {key: values[0] for key, values in _read_assignments(old).items() if len(values) == 1}
     for key, values in _read_assignments(new).items():
         literal = literals.get(key)

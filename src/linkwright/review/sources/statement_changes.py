@@ -25,6 +25,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.opposite_signs import find_opposite_reason
+from linkwright.review.sources.reading import try_parse_versions
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
 from linkwright.review.sources.renamed_words import rename_words
@@ -77,7 +78,8 @@ def _compare_values(
         lines = [str(change.sentence) for change in reported]
         replaced = [*find_replaced_cpp_literals(*paths, new.get_names(file.new_path), lines)]
     else:
-        replaced = [*find_replaced_literals(*paths), *find_deferred_imports(*paths)]
+        parsed = try_parse_versions(*paths)
+        replaced = [] if parsed is None else [*find_replaced_literals(*parsed), *find_deferred_imports(*parsed)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         reason = find_opposite_reason(text, new.get_names(file.new_path))
