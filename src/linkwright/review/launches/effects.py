@@ -23,6 +23,7 @@ from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_
 from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
+    find_lost_target_reason,
     find_node_remapping_reason,
     find_remapping_reason,
     find_renaming_reason,
@@ -143,7 +144,7 @@ def find_removal_reason(
     if entry.kind == "include":
         return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
-        return None
+        return find_lost_target_reason(entry, old, new)
     if any(other.name == entry.name and _has_computed_names(other) for other in new.entries):
         return None  # an action of a loop, which may start this node, too
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
