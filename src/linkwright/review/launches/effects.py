@@ -20,6 +20,7 @@ from linkwright.review.files.parameter_names import (
     switches_transform,
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
+from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
@@ -195,7 +196,7 @@ def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
 def _has_computed_names(entry: Entry) -> bool:
     """Return whether the names of a node are computed, such as from the variable of a loop."""
     names = (entry.settings.get(setting, "") for setting in ("name", NAMESPACE, "arguments"))
-    return entry.kind == "node" and any(_EXPRESSION in name for name in names)
+    return entry.kind == "node" and any(_EXPRESSION in name and not is_choice(name) for name in names)
 
 
 def _publishes_joint_states(outline: LaunchOutline) -> bool:

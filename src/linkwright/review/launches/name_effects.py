@@ -6,6 +6,7 @@ import re
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason, names_reason, possible_name_reason
+from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
 from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
@@ -125,6 +126,8 @@ def find_renaming_reason(
         or _UNKNOWN_NAME.search(new_name)
         or _has_new_variable(old_name, new_name)
         or _can_be(new_name, old_name)
+        or is_choice(old_name)
+        or is_choice(new_name)
     ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")

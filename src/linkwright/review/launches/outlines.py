@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Span
+from linkwright.review.launches.chosen_texts import resolve_choices
 from linkwright.review.launches.conditions import evaluate_condition, split_condition
 from linkwright.review.launches.evaluations import replace_names_in_evaluations
 
@@ -211,7 +212,9 @@ class LaunchOutline:
         """
         text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
         resolved = split_text(self._replace_variables(text))
-        return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
+        if self.is_ros1:
+            resolved = replace_names_in_evaluations(resolved, self._find_value)
+        return resolve_choices(resolved)
 
     def _replace_variables(self, text: str) -> str:
         for _ in range(_MAX_VARIABLE_DEPTH):
