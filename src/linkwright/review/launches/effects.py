@@ -132,8 +132,6 @@ def find_removal_reason(
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return explain_argument_removal(entry.name, is_ros1=old.is_ros1)
-    if entry.kind == READING:
-        return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
     if evaluate_condition(_resolve_condition(entry, old)) is False:
         return None
     if entry.kind == "remapping":

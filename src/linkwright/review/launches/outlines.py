@@ -51,11 +51,8 @@ PARAMETER = "parameter "
 ALLOW_SUBSTITUTIONS = "allow_substs"
 """The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
-_ENVIRONMENT_SUBSTITUTION = re.compile(
-    r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)|"
-    r"\bos\.(?:environ\.get|getenv)\(\w+, (?:default=)?(?P<read>[^()]*)\)"
-)
-"""An environment variable with a default, also as Python reads it."""
+_ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+"""An environment variable with a default."""
 _QUOTED_TEXT = re.compile(r"(?P<quote>['\"])(?P<text>[^'\"]*)(?P=quote)")
 _SPLIT_TEXT = re.compile(r"(?P<text>[^$()]*)\.split\((?P<separator>[^$()]*)\)")
 """A call in Python that splits a known text."""
@@ -279,7 +276,7 @@ def find_own_default(name: str, text: str) -> str:
 
 def _find_default(variable: re.Match[str]) -> str:
     """Return the default of an environment variable, without the quotes around a text."""
-    default = (variable["default"] or variable["read"] or "").strip()
+    default = (variable["default"] or "").strip()
     return _QUOTED_TEXT.sub(r"\g<text>", default)
 
 
