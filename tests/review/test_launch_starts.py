@@ -419,3 +419,15 @@ def test_boolean_parameter_in_another_notation_is_unchanged(repository, compare,
     repository.write({"arm/launch/arm.launch": text.format(value)})
     changed = [sentence for found in compare(repository).subjects for sentence in sentences(found)]
     assert bool(changed) is is_changed
+
+
+def test_node_with_another_condition_is_compared_with_the_equal_node(review_changes):
+    node = '<node pkg="arm" exec="view" name="view"{} args="{}"/>'
+    text = f"<launch><arg name='more' default='false'/>{node.format('', 'plain')}</launch>"
+    nodes = node.format(' if="$(var more)"', "full") + node.format(' unless="$(var more)"', "plain")
+    changes, found = review_changes("arm.launch.xml", text, node.format("", "plain"), nodes)
+    assert [line for line in changes if line.startswith("node")] == [
+        "node 'arm/view' (view): condition unless $(var more) added",
+        "node 'arm/view' added: if $(var more), name view, arguments full",
+    ]
+    assert found == []

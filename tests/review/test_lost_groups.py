@@ -19,6 +19,7 @@ LAUNCH = '<launch><rosparam file="$(find lamp)/config/{name}" command="load"/></
     [
         (GROUP, {}, True),
         ("devices:\n  lamp: 1\n", {}, False),
+        (GROUP.replace("devices", "ros__parameters"), {}, False),
         (GROUP, {"lamp/config/more.yaml": GROUP}, True),
         (GROUP, {"lamp/config/more.yaml": GROUP, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
         (FLAT, {"lamp/config/more.yaml": KEYS, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),

@@ -13,6 +13,8 @@ from linkwright.review.files.parameter_names import is_parameter
 from linkwright.review.versions import Version
 
 _MIN_GROUP_SIZE = 2
+_PARAMETERS = "ros__parameters"
+"""The key of the parameters of a node in ROS 2, which is below the name of the node."""
 _TOP_KEY = re.compile(r"^['\"]?([\w./~-]+)['\"]?\s*:", re.MULTILINE)
 LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
 """The ends of the names of launch files."""
@@ -21,14 +23,20 @@ LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.
 def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phrase | None:
     """Return the reason why removing a group at the top of a file is breaking, or None.
 
-    A group that moved to a file which launch files load is not lost. A list is not a group.
+    A group that moved to a file which launch files load is not lost. A list is not a group. In ROS 2, no program
+    gets parameters without the name of a node.
 
     Args:
         pair: both versions of the file.
         name: the path of the removed part.
         values: the paths of its values.
     """
-    if len(values) < _MIN_GROUP_SIZE or "." in name or any("[" in value or is_parameter(value) for value in values):
+    if (
+        len(values) < _MIN_GROUP_SIZE
+        or "." in name
+        or name == _PARAMETERS
+        or any("[" in value or is_parameter(value) for value in values)
+    ):
         return None
     if is_of_lost_group(pair.versions, pair.new_path, name):
         return None
