@@ -40,9 +40,9 @@ def find_group_reason(
 ) -> Phrase | None:
     """Return the reason why removing a group at the top of a file is breaking, or None.
 
-    A group that moved to a file which launch files load is not lost. Nobody reads the group of a plugin that its list
-    loses, such as a recovery behavior of ``move_base``. A list is not a group. In ROS 2, no program gets parameters
-    without the name of a node.
+    A group that moved to a file which launch files load is not lost. No program reads the group of a plugin that its
+    list loses, such as a recovery behavior of ``move_base``. A list is not a group. In ROS 2, no program gets
+    parameters without the name of a node.
 
     Args:
         pair: both versions of the file.

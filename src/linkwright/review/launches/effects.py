@@ -97,10 +97,16 @@ _GAZEBO_ARGUMENTS = ("gz_args", "ign_args")
 _RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
 _SERVER_OPTION = re.compile(r"(?:^|\s)(?:-[a-z]*s[a-z]*|--headless-rendering)(?=\s|$)")
 """The option of Gazebo without which its window opens."""
+_UNKNOWN_CHOICE = re.compile(r"\sif\s.+\selse\s", re.DOTALL)
+"""A choice of Python between two values, which depends on something unknown."""
 _CLASSIC_PACKAGE, _WINDOW_ARGUMENT = "gazebo_ros)", "gui"
 """A part of the names of the launch files of Gazebo Classic, and their argument for the window."""
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_FILE_REASONS = (
+    phrase("callers that pass the name of a file instead of its path fail"),
+    phrase("callers that pass the path of a file instead of its name fail"),
+)
 _STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -360,7 +366,7 @@ def _find_option_reason(
 ) -> Phrase | None:
     """Return the reason why other options of Gazebo are breaking, or None if they are not."""
     before, after = old_outline.resolve(old or ""), new_outline.resolve(new or "")
-    if _VARIABLE.search(after):
+    if _VARIABLE.search(after) or _UNKNOWN_CHOICE.search(after):
         return None
     if _RUN_OPTION.search(before) and not _RUN_OPTION.search(after):
         return phrase("the simulation starts paused")
@@ -442,10 +448,19 @@ def _find_argument_reason(
     if setting == "choices" and old is not None and new is not None:
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
-            return phrase("callers that pass '{value}' fail", value=", ".join(removed))
+            return _make_caller_reason(", ".join(removed))
     if setting == "choices" and old is None and any(item.lower() not in _BOOLEANS for item in list_items(new or "")):
         return phrase("callers that pass another value fail")
     return None
+
+
+def is_about_callers(reason: Phrase) -> bool:
+    """Return whether a value that callers pass is the reason, which they cannot pass under a new name."""
+    return reason.template in (_make_caller_reason("").template, *(reason.template for reason in _FILE_REASONS))
+
+
+def _make_caller_reason(value: str) -> Phrase:
+    return phrase("callers that pass '{value}' fail", value=value)
 
 
 def _find_default_reason(
@@ -460,15 +475,13 @@ def _find_default_reason(
         return None
     for file_name, path in ((old, new), (new, old)):
         if "/" not in file_name and "." in file_name and "/" in path and PurePosixPath(path).name == file_name:
-            if file_name is old:
-                return phrase("callers that pass the name of a file instead of its path fail")
-            return phrase("callers that pass the path of a file instead of its name fail")
+            return _FILE_REASONS[file_name is not old]
     if (
         old_value.lower() in _BOOLEANS
         and re.fullmatch(r"[a-z]\w*", new_value.lower())
         and new_value.lower() not in _BOOLEANS
     ):
-        return phrase("callers that pass '{value}' fail", value=old_value)
+        return _make_caller_reason(old_value)
     uses = list(_find_breaking_uses(argument.name, old_outline, new_outline))
     stopped = list(
         dict.fromkeys(

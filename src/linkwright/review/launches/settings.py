@@ -18,6 +18,7 @@ from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import (
     explain_argument_removal,
     find_setting_reason,
+    is_about_callers,
     is_other_joint_state_publisher_started,
 )
 from linkwright.review.launches.environment_readers import explain_removed_reading
@@ -221,7 +222,9 @@ class SettingChanges:
             if new.kind == READING and reason is None:
                 continue
             keeps_names = reason is not None and self._keeps_names(old, new, pair.name)
-            reason = None if keeps_names else reason
+            is_renamed = new.kind == "argument" and new.name in self._old_names
+            is_kept = keeps_names or (is_renamed and reason is not None and is_about_callers(reason))
+            reason = None if is_kept else reason
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
             transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
             if transform is not None:
