@@ -110,3 +110,19 @@ def test_a_parameter_with_a_similar_name_is_renamed(repository, compare):
     (change,) = subject(compare(repository), PATH).changes
     assert str(change.sentence) == "parameter 'depth' (3) renamed to 'depths' (3)"
     assert str(change.reason) == "'arm/config/arm.yaml' still sets 'depth', which has no effect"
+
+
+@pytest.mark.parametrize("folder", ["include/parameters", None])
+def test_no_program_reads_a_description_of_parameters_by_its_path(repository, compare, folder):
+    build_file = (
+        "project(arm)\ngenerate_parameter_library(p {}/arm.yaml)\ninstall(DIRECTORY include/ DESTINATION include)\n"
+    )
+    files = {"arm/package.xml": FILES["arm/package.xml"], "arm/include/arm.yaml": DESCRIPTION}
+    repository.commit({**files, "arm/CMakeLists.txt": build_file.format("include")})
+    if folder is not None:
+        repository.write({f"arm/{folder}/arm.yaml": DESCRIPTION, "arm/CMakeLists.txt": build_file.format(folder)})
+    else:
+        repository.write({"arm/CMakeLists.txt": "project(arm)\n"})
+    repository.write({"arm/include/arm.yaml": None})
+    found = breaking(compare(repository))
+    assert not [line for line in found if any(word in line for word in ("file removed", "moved from", "renamed"))]

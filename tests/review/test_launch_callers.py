@@ -445,3 +445,35 @@ def test_a_node_that_moves_out_of_an_included_file_is_compared(repository, compa
     repository.write({"arm/launch/arm.launch.xml": text.format(node)})
     lines = sentences(subject(compare(repository), "arm/launch/arm.launch.xml"))
     assert f"node 'arm/hand' moved from arm/launch/part.launch.xml{expected}" in lines
+
+
+LIMITS = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+LOWER = os.environ.get("LEFT_LOWER", "0")
+UPPER = os.getenv("LEFT_UPPER", "1")
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="arm", executable="hand", arguments=[LOWER, UPPER])])
+"""
+
+
+def test_renamed_environment_variables_are_told_as_such(review_changes_with_reasons):
+    changes = review_changes_with_reasons(LIMITS.replace("LEFT_", "RIGHT_"), old=LIMITS)
+    assert changes == {
+        "environment variable 'LEFT_LOWER' renamed to 'RIGHT_LOWER'": (
+            "a value that a user sets for 'LEFT_LOWER' has no effect"
+        ),
+        "environment variable 'LEFT_UPPER' renamed to 'RIGHT_UPPER'": (
+            "a value that a user sets for 'LEFT_UPPER' has no effect"
+        ),
+    }
+    assert next(iter(changes)).startswith("environment variable 'LEFT_LOWER'")
+
+
+def test_environment_variable_for_another_setting_is_not_renamed(review_changes_with_reasons):
+    new = LIMITS.replace('UPPER = os.getenv("LEFT_UPPER", "1")', 'UPPER, NAME = "1", os.getenv("ARM_NAME", "hand")')
+    changes = review_changes_with_reasons(new.replace('executable="hand"', 'executable="hand", name=NAME'), old=LIMITS)
+    assert "use of environment variable 'LEFT_UPPER' removed" in changes
+    assert "use of environment variable 'ARM_NAME' added" in changes

@@ -502,7 +502,7 @@ def generate_launch_description():
         ('"rate": 10', '"rate": 20', "node 'arm/driver': parameter rate 10 -> 20", False),
         ('"id": "1"', '"id": 1', "node 'arm/driver': parameter id '1' -> 1", True),
         ('"on": True', '"on": "true"', "node 'arm/driver': parameter on True -> 'true'", True),
-        ('"rate": 10', '"rate": model', "node 'arm/driver': parameter rate 10 -> os.environ.get(MODEL, a)", False),
+        ('"rate": 10', '"rate": model', "node 'arm/driver': parameter rate 10 -> $(env MODEL a)", False),
         ('"frame_name": "tool"', '"frame_name": 3', "node 'arm/driver': parameter frame_name tool -> 3", False),
     ],
 )  # fmt: skip

@@ -162,3 +162,25 @@ def test_a_name_that_an_added_node_has_now_is_not_lost(repository, compare, targ
     repository.write({"arm/launch/arm.launch": text.format("", added)})
     changes = subject(compare(repository), "arm/launch/arm.launch").changes
     assert any(change.reason is not None for change in changes) is is_breaking
+
+
+REMAPPINGS = """<remap from="scan" to="left/scan"/><remap from="goal" to="left/goal"/>"""
+
+
+@pytest.mark.parametrize(
+    ("added", "reason"),
+    [
+        ("", CERTAIN.format("left/goal")),
+        ('<remap from="goal" to="left/goal"/>', None),
+        ('<node pkg="other" exec="m"><remap from="aim" to="left/goal"/></node>', None),
+    ],
+)
+def test_removed_node_of_a_program_that_another_node_runs_is_missing_by_its_topics(repository, compare, added, reason):
+    node = '<node pkg="arm" exec="n.py">{}</node>'
+    text = f"<launch>{node.format(REMAPPINGS)}{node.format('')}</launch>"
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch.xml": text})
+    repository.write({"arm/launch/arm.launch.xml": f"<launch>{added}{node.format('')}</launch>"})
+    changes = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+    (change,) = [change for change in changes if "removed" in str(change.sentence)]
+    assert (None if change.reason is None else str(change.reason)) == reason

@@ -375,7 +375,12 @@ def test_default_that_closes_the_window_of_gazebo_is_breaking(review_changes, na
 
 @pytest.mark.parametrize(
     ("old", "new", "is_breaking"),
-    [("-r a.sdf", "-r -s a.sdf", True), ("-r a.sdf", "-rs a.sdf", True), ("-r -s a.sdf", "-r a.sdf", False)],
+    [
+        ("-r a.sdf", "-r -s a.sdf", True),
+        ("-r a.sdf", "-rs a.sdf", True),
+        ("-r -s a.sdf", "-r a.sdf", False),
+        ("-r a.sdf", "-r -s a.sdf if hidden else -r a.sdf", False),
+    ],
 )
 def test_option_that_closes_the_window_of_gazebo_is_breaking(review_changes, old, new, is_breaking):
     text = f"""<launch><include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py">
@@ -419,3 +424,27 @@ def test_boolean_parameter_in_another_notation_is_unchanged(repository, compare,
     repository.write({"arm/launch/arm.launch": text.format(value)})
     changed = [sentence for found in compare(repository).subjects for sentence in sentences(found)]
     assert bool(changed) is is_changed
+
+
+def test_node_with_another_condition_is_compared_with_the_equal_node(review_changes):
+    node = '<node pkg="arm" exec="view" name="view"{} args="{}"/>'
+    text = f"<launch><arg name='more' default='false'/>{node.format('', 'plain')}</launch>"
+    nodes = node.format(' if="$(var more)"', "full") + node.format(' unless="$(var more)"', "plain")
+    changes, found = review_changes("arm.launch.xml", text, node.format("", "plain"), nodes)
+    assert [line for line in changes if line.startswith("node")] == [
+        "node 'arm/view' (view): condition unless $(var more) added",
+        "node 'arm/view' added: if $(var more), name view, arguments full",
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("name", ["hardware", "mock"])
+def test_nobody_passes_the_old_values_under_the_new_name_of_an_argument(review_changes, name):
+    text = """<launch><arg name="mock" default="false"/><include file="$(find-pkg-share base)/launch/a.launch.xml">
+      <arg name="kind" value="$(var mock)"/></include></launch>"""
+    new = text.replace('"mock" default="false"', f'"{name}" default="real"').replace("var mock", f"var {name}")
+    _, found = review_changes("arm.launch.xml", text, text, new)
+    is_renamed = name != "mock"
+    assert found == [
+        "argument 'mock' renamed to 'hardware'" if is_renamed else "argument 'mock': default false -> real"
+    ]

@@ -19,6 +19,7 @@ LAUNCH = '<launch><rosparam file="$(find lamp)/config/{name}" command="load"/></
     [
         (GROUP, {}, True),
         ("devices:\n  lamp: 1\n", {}, False),
+        (GROUP.replace("devices", "ros__parameters"), {}, False),
         (GROUP, {"lamp/config/more.yaml": GROUP}, True),
         (GROUP, {"lamp/config/more.yaml": GROUP, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
         (FLAT, {"lamp/config/more.yaml": KEYS, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
@@ -31,4 +32,15 @@ def test_a_removed_group_of_parameters_is_breaking(repository, compare, group, f
     repository.write({"lamp/config/lamp.yaml": REST, **files})
     assert [line.partition(":")[0] for line in breaking(compare(repository))] == (
         ["devices removed"] if is_breaking else []
+    )
+
+
+@pytest.mark.parametrize(("kept", "is_breaking"), [("", False), ("  - {name: spin, type: a/Slow}\n", True)])
+def test_a_group_of_a_plugin_that_its_list_loses_is_not_missed(repository, compare, kept, is_breaking):
+    plugins = "behaviors:\n  - {name: back, type: a/Back}\n"
+    old = f"{plugins}  - {{name: spin, type: a/Spin}}\nspin:\n  rate: 1\n  angle: 2\n"
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": old})
+    repository.write({"lamp/config/lamp.yaml": plugins + kept})
+    assert [line.partition(":")[0] for line in breaking(compare(repository))] == (
+        ["spin removed"] if is_breaking else []
     )

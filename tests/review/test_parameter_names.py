@@ -448,3 +448,15 @@ planner:
 def test_topic_of_a_controller_of_ros_1_is_breaking(review_changes, old, new, is_breaking):
     _, found_breaking = review_changes(ROS1_BASE, ROS1_BASE.replace(old, new))
     assert bool(found_breaking) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("new_class", "start"),
+    [("Slow", "controller_manager.ros__parameters.hand.type lamp/Fast -> lamp/Slow"), ("Fast", "hand removed")],
+)
+def test_parameters_of_a_controller_with_another_class_are_told_with_it(repository, compare, new_class, start):
+    manager = "controller_manager:\n  ros__parameters:\n    hand: {type: lamp/Fast}\n    arm: {type: lamp/Arm}\n"
+    repository.commit({"lamp.yaml": f"{manager}hand:\n  ros__parameters: {{rate: 1, size: 2}}\n"})
+    repository.write({"lamp.yaml": manager.replace("lamp/Fast", f"lamp/{new_class}")})
+    (line,) = breaking(compare(repository))
+    assert line.startswith(start)

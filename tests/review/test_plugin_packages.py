@@ -21,6 +21,7 @@ REASON = "package.xml does not name '{}', without which the plugin is not loaded
         (PLANNER, "lamp_planner/Lamp", "nav2_smac_planner/Grid", "navigation2", []),
         (PLANNER, "lamp_planner/Lamp", "opennav_docking::Dock", "nav2_bringup", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_planner/Candle", "", []),
+        (PLANNER, "lamp_planner/Lamp", "solver_plugins::CeresSolver", "", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_plans/Lamp", "", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_planner::Lamp", "", []),
         (

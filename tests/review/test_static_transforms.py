@@ -125,3 +125,15 @@ def test_the_period_of_ros_1_is_not_the_frame_of_the_publisher_of_tf2_that_repla
         assert breaking(result) == []
         found = [sentence for subject in result.subjects for sentence in sentences(subject)]
         assert sorted(found) == sorted([replaced, *changes])
+
+
+@pytest.mark.parametrize(
+    "arguments", ["0 0 0 0 0 0 base $(var side)_laser", "--frame-id base --child-frame-id $(var side)_laser"]
+)
+def test_frame_with_a_variable_is_named_in_full(repository, compare, arguments):
+    path = "arm/launch/a.launch.xml"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: "<launch/>"})
+    node = f'<node pkg="tf2_ros" exec="static_transform_publisher" args="{arguments}"/>'
+    repository.write({path: f'<launch><arg name="side" default="left"/>{node}</launch>'})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert f"node 'tf2_ros/static_transform_publisher' of '$(var side)_laser' added: arguments {arguments}" in lines

@@ -13,6 +13,7 @@ from linkwright.review.drawings.images import render_unpaired_robot
 from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
+from linkwright.review.files.generated_parameters import generates_code
 from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.folders import without_folder
 from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
@@ -45,7 +46,7 @@ def compare_file(
         new_path: the path in the new version; None for a removed file.
         drawings: the kinds of drawings of robots that look different.
     """
-    if old_path is not None and is_without_manifest(versions.old, old_path):
+    if old_path is not None and (is_without_manifest(versions.old, old_path) or generates_code(versions.old, old_path)):
         rule = replace(rule, removal_reason=None)
     is_test = rule.kind in _TESTED_KINDS and old_path is not None and is_test_file(versions.old, old_path)
     if old_path is None or new_path is None:

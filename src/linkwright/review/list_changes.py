@@ -13,6 +13,8 @@ EMPTY = "''"
 _LONG_LIST = 4
 """The maximum number of items of lists that are shown in full, unless they are too long."""
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_WORD = re.compile(r"(?:\$\((?:[^()]|\([^()]*\))*\)|\S)+")
+"""A word of a line, in which a substitution such as ``$(var side)`` may have blanks."""
 _LONG_NAME = 120
 """The maximum number of characters of a list item that is shown in full."""
 
@@ -57,6 +59,11 @@ def list_items(text: str) -> list[str]:
     if not is_list or set(content) & set("[]{}"):
         return [text]
     return [item.strip() for item in _split_at_commas(content) if item.strip()]
+
+
+def split_command(text: str) -> list[str]:
+    """Return the words of a command line, which is the text of a flat list or of a line."""
+    return list_items(text) if text.startswith("[") else _WORD.findall(text)
 
 
 def nested_list_items(text: str) -> list[str]:

@@ -17,7 +17,7 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import YamlValue, collect_values, read_yaml_values
+from linkwright.review.files.yaml_values import YamlValue, collect_values, compose_yaml, read_yaml_values
 from linkwright.review.versions import Version
 
 _TYPES = re.compile(r"(?:bool|int|double|string|none)(?:_array)?(?:_fixed_\d+)?")
@@ -78,6 +78,16 @@ class _Range:
 def is_parameter_description(root: yaml.Node | None) -> bool:
     """Return whether a document describes the parameters of a generated library."""
     return isinstance(root, yaml.MappingNode) and len(root.value) > 0 and _read_parameters(root) is not None
+
+
+def generates_code(version: Version, path: str) -> bool:
+    """Return whether code is generated from a file, which no program reads while it runs."""
+    if not path.endswith(_SETTINGS_SUFFIXES):
+        return False
+    try:
+        return is_parameter_description(compose_yaml(version.text(path)))
+    except UnreadableFileError:
+        return False
 
 
 def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: yaml.Node) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
@@ -13,22 +13,47 @@ from linkwright.review.files.parameter_names import is_parameter
 from linkwright.review.versions import Version
 
 _MIN_GROUP_SIZE = 2
+_PARAMETERS = "ros__parameters"
+"""The key of the parameters of a node in ROS 2, which is below the name of the node."""
 _TOP_KEY = re.compile(r"^['\"]?([\w./~-]+)['\"]?\s*:", re.MULTILINE)
 LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
 """The ends of the names of launch files."""
 
 
-def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phrase | None:
+_LIST_ITEM = re.compile(r"\[([^\[\]]+)\]")
+"""The name of an item of a list in a path, such as ``behaviors[rotate].type``."""
+
+
+def find_lost_items(old: Iterable[str], new: Iterable[str]) -> frozenset[str]:
+    """Return the names of list items that only the old version of a file has.
+
+    Args:
+        old: the paths of the old values.
+        new: the paths of the new values.
+    """
+    before, after = ({item for path in paths for item in _LIST_ITEM.findall(path)} for paths in (old, new))
+    return frozenset(before - after)
+
+
+def find_group_reason(
+    pair: FilePair, name: str, values: Collection[str], lost_items: Collection[str] = ()
+) -> Phrase | None:
     """Return the reason why removing a group at the top of a file is breaking, or None.
 
-    A group that moved to a file which launch files load is not lost. A list is not a group.
+    A group that moved to a file which launch files load is not lost. No program reads the group of a plugin that its
+    list loses, such as a recovery behavior of ``move_base``. A list is not a group. In ROS 2, no program gets
+    parameters without the name of a node.
 
     Args:
         pair: both versions of the file.
         name: the path of the removed part.
         values: the paths of its values.
+        lost_items: the names of list items that only the old version has.
     """
-    if len(values) < _MIN_GROUP_SIZE or "." in name or any("[" in value or is_parameter(value) for value in values):
+    is_unread = name == _PARAMETERS or name in lost_items
+    if is_unread or len(values) < _MIN_GROUP_SIZE or "." in name:
+        return None
+    if any("[" in value or is_parameter(value) for value in values):
         return None
     if is_of_lost_group(pair.versions, pair.new_path, name):
         return None

@@ -26,7 +26,7 @@ from linkwright.review.files.lists_of_mappings import (
     find_replaced_lists,
     report_replaced_lists,
 )
-from linkwright.review.files.lost_groups import find_group_reason
+from linkwright.review.files.lost_groups import find_group_reason, find_lost_items
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
 from linkwright.review.files.moved_nodes import find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
@@ -264,6 +264,7 @@ def _compare_values(
         )
         reason = reason or next((found for found in added_reasons if found is not None), None)
         yield ValueChange(name, "added", _list_values(name, values_below), location, reason)
+    lost_items = find_lost_items(old, new)
     for name, values_below in _find_unpaired_parts(_leave_out(old, moved), new):
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
@@ -273,7 +274,7 @@ def _compare_values(
         )
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
-        reason = reason or find_group_reason(pair, name, values_below)
+        reason = reason or find_group_reason(pair, name, values_below, lost_items)
         node_move = None if reason is None else find_node_move(pair, name, values_below)
         if node_move is not None:
             pair.changes.append(Change(node_move, location=location))

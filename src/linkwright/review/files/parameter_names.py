@@ -51,6 +51,7 @@ _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 _CONTROLLER_TOPIC = re.compile(r"(^|[._])(odom|odometry|command|cmd_vel)_topic$")
 """The parameters that name the topics of a controller. Other nodes only use the topics."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]*[./])?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
+_CLASS_SEPARATOR = re.compile(r"/|::")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
 """The parameters that name controllers which a program loads or commands."""
@@ -112,8 +113,13 @@ class NameRules:
         self._clock_nodes = {node for name in old if (node := find_node_name(name)) and name.endswith(_CLOCK_PARAMETER)}
         self._clock_nodes -= {find_node_name(name) for name in old if not name.endswith(f".{_CLOCK_PARAMETER}")}
         self._new_controllers = set(find_controllers(new))
-        types = filter(None, map(_CONTROLLER_TYPE.fullmatch, old))
-        self._lost_controllers = {match["controller"] for match in types} - self._new_controllers
+        old_types, new_types = (_read_controller_types(values) for values in (old, new))
+        self._told_controllers = {
+            name
+            for name, old_type in old_types.items()
+            if name not in self._new_controllers or new_types.get(name, old_type) != old_type
+        }
+        """The lost controllers and those with another class, which the lines about their types tell."""
         self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._topics = CostmapTopics(old, new, find_remappings)
         self._replaced = find_replaced_classes(old, new)
@@ -191,7 +197,7 @@ class NameRules:
             return make_controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
-            if node["node"].rpartition(".")[2].rpartition("/")[2] in self._lost_controllers:
+            if node["node"].rpartition(".")[2].rpartition("/")[2] in self._told_controllers:
                 return None  # the line about its type has the reason
             if node["node"] in self._clock_nodes or self._readers.have_renamed_node(node["node"], self._added_nodes):
                 return None
@@ -371,6 +377,14 @@ def _separate_by_slashes(part: str) -> str:
 
 def _make_plugin_reason(names: Collection[str]) -> Phrase:
     return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
+
+
+def _read_controller_types(values: Mapping[str, YamlValue]) -> dict[str, str]:
+    """Return the classes of the controllers of a file, without their packages, by the name of the controller."""
+    matches = ((_CONTROLLER_TYPE.fullmatch(name), value) for name, value in values.items())
+    return {
+        match["controller"]: _CLASS_SEPARATOR.split(value.text)[-1] for match, value in matches if match is not None
+    }
 
 
 def find_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:

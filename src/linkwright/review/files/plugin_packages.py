@@ -26,7 +26,7 @@ _OTHER_NAMES = frozenset(
     {
         *("cached_ik_kinematics_plugin", "chomp_interface", "default_planner_request_adapters", "fake_components"),
         *("kdl_kinematics_plugin", "lma_kinematics_plugin", "mock_components", "occupancy_map_monitor"),
-        *("ompl_interface", "srv_kinematics_plugin"),
+        *("ompl_interface", "solver_plugins", "srv_kinematics_plugin", "stomp_moveit"),
     }
 )
 """The first names of classes that belong to packages with other names."""

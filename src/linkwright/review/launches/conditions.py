@@ -57,8 +57,16 @@ def _evaluate_text(text: str) -> bool | None:
             return (left == right) == (comparison["operator"] == "==")
         return _BOOLEANS.get(text.lower())
     try:
-        return _to_bool(_evaluate_expression(parse_python_expression(text)))
+        return evaluate_test(parse_python_expression(text))
     except (SyntaxError, ValueError, RecursionError):
+        return None
+
+
+def evaluate_test(node: ast.expr) -> bool | None:
+    """Return whether a test of constants holds, or None if that is unknown."""
+    try:
+        return _to_bool(_evaluate_expression(node))
+    except (ValueError, RecursionError):
         return None
 
 

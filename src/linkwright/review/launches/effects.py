@@ -20,9 +20,11 @@ from linkwright.review.files.parameter_names import (
     switches_transform,
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
+from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
+    find_lost_target_reason,
     find_node_remapping_reason,
     find_remapping_reason,
     find_renaming_reason,
@@ -95,10 +97,16 @@ _GAZEBO_ARGUMENTS = ("gz_args", "ign_args")
 _RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
 _SERVER_OPTION = re.compile(r"(?:^|\s)(?:-[a-z]*s[a-z]*|--headless-rendering)(?=\s|$)")
 """The option of Gazebo without which its window opens."""
+_UNKNOWN_CHOICE = re.compile(r"\sif\s.+\selse\s", re.DOTALL)
+"""A choice of Python between two values, which depends on something unknown."""
 _CLASSIC_PACKAGE, _WINDOW_ARGUMENT = "gazebo_ros)", "gui"
 """A part of the names of the launch files of Gazebo Classic, and their argument for the window."""
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_FILE_REASONS = (
+    phrase("callers that pass the name of a file instead of its path fail"),
+    phrase("callers that pass the path of a file instead of its name fail"),
+)
 _STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -130,8 +138,6 @@ def find_removal_reason(
     """
     if entry.kind == "argument" and "value" not in entry.settings:
         return explain_argument_removal(entry.name, is_ros1=old.is_ros1)
-    if entry.kind == READING:
-        return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
     if evaluate_condition(_resolve_condition(entry, old)) is False:
         return None
     if entry.kind == "remapping":
@@ -143,7 +149,7 @@ def find_removal_reason(
     if entry.kind == "include":
         return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
-        return None
+        return find_lost_target_reason(entry, old, new)
     if any(other.name == entry.name and _has_computed_names(other) for other in new.entries):
         return None  # an action of a loop, which may start this node, too
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
@@ -194,7 +200,7 @@ def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
 def _has_computed_names(entry: Entry) -> bool:
     """Return whether the names of a node are computed, such as from the variable of a loop."""
     names = (entry.settings.get(setting, "") for setting in ("name", NAMESPACE, "arguments"))
-    return entry.kind == "node" and any(_EXPRESSION in name for name in names)
+    return entry.kind == "node" and any(_EXPRESSION in name and not is_choice(name) for name in names)
 
 
 def _publishes_joint_states(outline: LaunchOutline) -> bool:
@@ -360,7 +366,7 @@ def _find_option_reason(
 ) -> Phrase | None:
     """Return the reason why other options of Gazebo are breaking, or None if they are not."""
     before, after = old_outline.resolve(old or ""), new_outline.resolve(new or "")
-    if _VARIABLE.search(after):
+    if _VARIABLE.search(after) or _UNKNOWN_CHOICE.search(after):
         return None
     if _RUN_OPTION.search(before) and not _RUN_OPTION.search(after):
         return phrase("the simulation starts paused")
@@ -442,10 +448,19 @@ def _find_argument_reason(
     if setting == "choices" and old is not None and new is not None:
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
-            return phrase("callers that pass '{value}' fail", value=", ".join(removed))
+            return _make_caller_reason(", ".join(removed))
     if setting == "choices" and old is None and any(item.lower() not in _BOOLEANS for item in list_items(new or "")):
         return phrase("callers that pass another value fail")
     return None
+
+
+def is_about_callers(reason: Phrase) -> bool:
+    """Return whether a value that callers pass is the reason, which they cannot pass under a new name."""
+    return reason.template in (_make_caller_reason("").template, *(reason.template for reason in _FILE_REASONS))
+
+
+def _make_caller_reason(value: str) -> Phrase:
+    return phrase("callers that pass '{value}' fail", value=value)
 
 
 def _find_default_reason(
@@ -460,15 +475,13 @@ def _find_default_reason(
         return None
     for file_name, path in ((old, new), (new, old)):
         if "/" not in file_name and "." in file_name and "/" in path and PurePosixPath(path).name == file_name:
-            if file_name is old:
-                return phrase("callers that pass the name of a file instead of its path fail")
-            return phrase("callers that pass the path of a file instead of its name fail")
+            return _FILE_REASONS[file_name is not old]
     if (
         old_value.lower() in _BOOLEANS
         and re.fullmatch(r"[a-z]\w*", new_value.lower())
         and new_value.lower() not in _BOOLEANS
     ):
-        return phrase("callers that pass '{value}' fail", value=old_value)
+        return _make_caller_reason(old_value)
     uses = list(_find_breaking_uses(argument.name, old_outline, new_outline))
     stopped = list(
         dict.fromkeys(

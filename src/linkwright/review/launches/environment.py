@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from linkwright.diagnostics import Span
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import ENVIRONMENT_KIND, READING, Entry
+from linkwright.review.launches.substitution_texts import ENVIRONMENT_FUNCTION
 from linkwright.review.launches.text import ExpressionTexts
 
-_READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
 _ENVIRON = ("os.environ", "environ")
 _SUBSTITUTION = re.compile(r"\$\((?P<kind>env|optenv) (?P<name>\w+)(?P<default> [^()]*)?\)")
 _NAME = re.compile(r"\w+")
@@ -76,7 +76,7 @@ def _find_read_names(node: ast.expr) -> Iterator[tuple[ast.expr, bool]]:
         yield node.slice, False
     elif isinstance(node, ast.Call) and node.args:
         name = called_name(node)
-        if _READING_FUNCTIONS.fullmatch(name):
+        if ENVIRONMENT_FUNCTION.fullmatch(name):
             yield node.args[0], True
         elif name.rpartition(".")[2] == "EnvironmentVariable":
             yield node.args[0], len(node.args) + len(node.keywords) > 1
@@ -120,7 +120,7 @@ def _find_set_names(test: ast.expr, *, is_true: bool) -> frozenset[str]:
         operator = ast.In if is_true else ast.NotIn
         is_membership = isinstance(test.ops[0], operator) and ast.unparse(test.comparators[0]) in _ENVIRON
         return frozenset({ast.unparse(test.left)}) if is_membership else frozenset()
-    if is_true and isinstance(test, ast.Call) and test.args and _READING_FUNCTIONS.fullmatch(called_name(test)):
+    if is_true and isinstance(test, ast.Call) and test.args and ENVIRONMENT_FUNCTION.fullmatch(called_name(test)):
         return frozenset({ast.unparse(test.args[0])})
     return frozenset()
 

@@ -17,14 +17,13 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason, may_be_offered
 from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.builders import separate_builders
 from linkwright.review.launches.effects import explain_argument_removal, find_removal_reason, is_made_by_default
-from linkwright.review.launches.environment_readers import find_reader, reads_variable
+from linkwright.review.launches.environment_readers import explain_removed_reading
 from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.fixed_arguments import report_fixed_arguments
@@ -253,12 +252,10 @@ def _report_unpaired_entries(
             continue
         written = rename_in_entry(entry, old_names)
         text, location = format_removed_entry(written), pair.location(entry.span, is_old=True)
-        reader = find_reader(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
-        if reader is not None:
-            was_reader = reads_variable(pair.versions.old, entry.name, reader)
-            is_ignored = was_reader and not is_launch_file(reader) and not entry.name.startswith("ROS_")
-            ignored = phrase("the launch file ignores the value of '{name}'", name=entry.name) if is_ignored else None
-            pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location, ignored)
+        if entry.kind == READING:
+            reader, reason = explain_removed_reading(pair, entry.name)
+            text = text if reader is None else phrase("{change}; {path} uses it", change=text, path=reader)
+            pair.add(text, location, reason)
             continue
         file = find_file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:

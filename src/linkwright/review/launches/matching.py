@@ -313,12 +313,17 @@ def _match_group(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
 
     An entry without a partner is paired with None.
 
-    Equal entries are matched first, then those with the same node name, then those that serve the same names, and then
-    the most similar ones.
+    Equal entries are matched first, then those that differ only in their conditions, then those with the same node
+    name, then those that serve the same names, and then the most similar ones.
     """
     remaining_old, remaining_new = list(old), list(new)
     pairs: list[tuple[Entry, Entry]] = []
-    criteria: tuple[Callable[[Entry, Entry], bool], ...] = (_are_equal, _have_same_node_name, _serve_same_names)
+    criteria: tuple[Callable[[Entry, Entry], bool], ...] = (
+        _are_equal,
+        _differ_only_in_condition,
+        _have_same_node_name,
+        _serve_same_names,
+    )
     for is_match in criteria:
         for entry in tuple(remaining_new):
             partner = next((old_entry for old_entry in remaining_old if is_match(old_entry, entry)), None)
@@ -351,6 +356,11 @@ def _match_group(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
 
 def _are_equal(old: Entry, new: Entry) -> bool:
     return old.settings == new.settings and _get_commands(old) == _get_commands(new)
+
+
+def _differ_only_in_condition(old: Entry, new: Entry) -> bool:
+    settings = [{**entry.settings, CONDITION: ""} for entry in (old, new)]
+    return settings[0] == settings[1] and _get_commands(old) == _get_commands(new)
 
 
 def _get_commands(entry: Entry) -> list[str]:

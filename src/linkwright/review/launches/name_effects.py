@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.breaking import name_reason, names_reason, possible_name_reason
+from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
-from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.taken_names import is_taken_over
 
@@ -46,6 +47,28 @@ def find_node_remapping_reason(
         return None
     is_known = publishes(program, source, old_outline, new_outline)
     return find_remapping_reason(source, old, new, old_outline, new_outline, is_known=is_known)
+
+
+def find_lost_target_reason(entry: Entry, old: LaunchOutline, new: LaunchOutline) -> Phrase | None:
+    """Return the reason why removing one of several nodes of a program is breaking, or None if it is not.
+
+    The node certainly publishes or serves a topic or service with a new name that no other action gives to anything.
+
+    Args:
+        entry: the removed node. Another action still starts its program.
+        old: the outline of the old file.
+        new: the outline of the new file.
+    """
+    program = find_loaded_class(entry) or entry.name
+    others = {target for other in new.entries for target in _find_remapping_targets(other, new)}
+    others |= {new.resolve(other.settings.get("to", "")) for other in new.entries if other.kind == "remapping"}
+    lost: list[str] = []
+    for setting, value in entry.settings.items():
+        source, target = without_condition(setting).removeprefix(REMAPPING), old.resolve(value)
+        is_lost = setting.startswith(REMAPPING) and target not in others and _NAME.fullmatch(target) is not None
+        if is_lost and publishes(program, source, old, new):
+            lost.append(target)
+    return names_reason(lost) if lost else None
 
 
 def publishes(program: str, source: str, old: LaunchOutline, new: LaunchOutline) -> bool:
@@ -103,6 +126,8 @@ def find_renaming_reason(
         or _UNKNOWN_NAME.search(new_name)
         or _has_new_variable(old_name, new_name)
         or _can_be(new_name, old_name)
+        or is_choice(old_name)
+        or is_choice(new_name)
     ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")

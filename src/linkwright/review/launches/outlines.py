@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Span
+from linkwright.review.launches.chosen_texts import resolve_choices
 from linkwright.review.launches.conditions import evaluate_condition, split_condition
 from linkwright.review.launches.evaluations import replace_names_in_evaluations
 
@@ -50,11 +51,8 @@ PARAMETER = "parameter "
 ALLOW_SUBSTITUTIONS = "allow_substs"
 """The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
-_ENVIRONMENT_SUBSTITUTION = re.compile(
-    r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)|"
-    r"\bos\.(?:environ\.get|getenv)\(\w+, (?:default=)?(?P<read>[^()]*)\)"
-)
-"""An environment variable with a default, also as Python reads it."""
+_ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+"""An environment variable with a default."""
 _QUOTED_TEXT = re.compile(r"(?P<quote>['\"])(?P<text>[^'\"]*)(?P=quote)")
 _SPLIT_TEXT = re.compile(r"(?P<text>[^$()]*)\.split\((?P<separator>[^$()]*)\)")
 """A call in Python that splits a known text."""
@@ -211,7 +209,9 @@ class LaunchOutline:
         """
         text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
         resolved = split_text(self._replace_variables(text))
-        return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
+        if self.is_ros1:
+            resolved = replace_names_in_evaluations(resolved, self._find_value)
+        return resolve_choices(resolved)
 
     def _replace_variables(self, text: str) -> str:
         for _ in range(_MAX_VARIABLE_DEPTH):
@@ -276,7 +276,7 @@ def find_own_default(name: str, text: str) -> str:
 
 def _find_default(variable: re.Match[str]) -> str:
     """Return the default of an environment variable, without the quotes around a text."""
-    default = (variable["default"] or variable["read"] or "").strip()
+    default = (variable["default"] or "").strip()
     return _QUOTED_TEXT.sub(r"\g<text>", default)
 
 

@@ -28,7 +28,7 @@ from linkwright.review.launches.python_syntax import (
     find_added_action,
     find_unused_values,
 )
-from linkwright.review.launches.python_tests import read_tests
+from linkwright.review.launches.python_tests import find_opaque_arguments, read_tests
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
 
 _HANDLER_CLASS = "RegisterEventHandler"
@@ -181,7 +181,7 @@ class _Reader:
                 self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
             if node.name not in self.helpers.find_local_names(self.python):
-                self._visit_body(node, scope)
+                self._visit_called_function(node, scope)
         else:
             for child in ast.iter_child_nodes(node):
                 self.visit(child, scope)
@@ -273,6 +273,18 @@ class _Reader:
                 self.visit(statement, inner)
         if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
             self.branches.add(id(node))
+
+    def _visit_called_function(self, function: ast.FunctionDef, scope: Scope) -> None:
+        """Find the actions of a function that launch calls, with the values that ``OpaqueFunction`` passes to it."""
+        texts = self.texts
+        passed = find_opaque_arguments(self.python, function)
+        values = {name: texts.resolve(value) for name, value in passed.items()}
+        if values:
+            self.texts = texts.with_names(
+                {name: value.texts.text(value.node) for name, value in values.items()}, values
+            )
+        self._visit_body(function, scope)
+        self.texts = texts
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:

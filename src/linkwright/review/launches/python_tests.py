@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Span, phrase
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.names import LaunchPythonFile
@@ -46,6 +47,7 @@ class _ObjectTest(NamedTuple):
     span: Span
 
 
+@cached_in_review(maxsize=64)
 def read_tests(python: PythonFile) -> dict[str, str]:
     """Return the tests of ``if`` statements as ``$(eval ...)`` with ``$(var NAME)`` in it, by their source.
 
@@ -125,7 +127,7 @@ class ArgumentReader:
         self._python = python
         parameters = function.args.args if function is not None else []
         self._names = {parameter.arg for parameter in parameters}
-        self._arguments = _find_opaque_arguments(python, function) if function is not None else {}
+        self._arguments = find_opaque_arguments(python, function) if function is not None else {}
 
     def read_test(self, node: ast.expr) -> ast.expr:
         """Return a test as an expression of texts, in which ``$(var NAME)`` is a value.
@@ -232,7 +234,7 @@ def _is_configurations(node: ast.expr) -> bool:
     return isinstance(node, ast.Attribute) and node.attr == _CONFIGURATIONS
 
 
-def _find_opaque_arguments(python: PythonFile, function: _Function) -> Mapping[str, ast.expr]:
+def find_opaque_arguments(python: PythonFile, function: _Function) -> Mapping[str, ast.expr]:
     """Return the expressions that ``OpaqueFunction`` passes to a function, by the names of its parameters.
 
     Without exactly one such action, and if the file calls the function itself, they are unknown.

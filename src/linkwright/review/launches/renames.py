@@ -1,4 +1,4 @@
-"""Find renamed arguments and variables of launch files."""
+"""Find renamed arguments, variables and environment variables of launch files."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from linkwright.review.launches.matching import Match
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.outlines import READING, Entry, LaunchOutline
 from linkwright.review.launches.titles import shorten_command
 
-_NAMED_KINDS = ("argument", "variable")
+_NAMED_KINDS = ("argument", "variable", READING)
+_SUBSTITUTION = re.compile(r"(\$\((?:var|arg|env|optenv) )([^() ]+)")
 _MIN_SHARE_OF_USES = 0.5
 """The minimum share of the uses of a name that must be uses of the new name."""
 _MIN_SIMILARITY_OF_NAMES = 0.6
@@ -24,7 +25,7 @@ _Use = tuple[str, str, str]
 
 
 def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]:
-    """Return the new names of renamed arguments and variables, by old name.
+    """Return the new names of renamed arguments, variables and environment variables, by old name.
 
     A name is a new name if the actions that used the old name use it. If neither the names nor the settings are alike,
     the same settings of actions must use it. If no action does, it must be similar and have the same settings, and no
@@ -45,17 +46,19 @@ def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]
 
 
 def rename_in_outline(outline: LaunchOutline, renamed: Mapping[str, str]) -> LaunchOutline:
-    """Return an outline with the new names of arguments and variables."""
+    """Return an outline with the new names of arguments and of both kinds of variables."""
     if not renamed:
         return outline
     return replace(outline, entries=[rename_in_entry(entry, renamed) for entry in outline.entries])
 
 
 def rename_in_entry(entry: Entry, renamed: Mapping[str, str]) -> Entry:
-    """Return an action with the new names of arguments and variables."""
+    """Return an action with the new names of arguments and of both kinds of variables."""
     return replace(
         entry,
-        name=renamed.get(entry.name, entry.name) if entry.has_value else rename_in_text(entry.name, renamed),
+        name=renamed.get(entry.name, entry.name)
+        if entry.has_value or entry.kind == READING
+        else rename_in_text(entry.name, renamed),
         settings={
             rename_in_text(name, renamed): rename_in_text(value, renamed) for name, value in entry.settings.items()
         },
@@ -72,7 +75,8 @@ def _compute_rename_score(old_entry: Entry, new_entry: Entry, old: LaunchOutline
     similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
     has_equal_settings = old_entry.settings == new_entry.settings
     value = old_entry.settings.get("default", old_entry.settings.get("value", ""))
-    is_alike = similarity >= _MIN_SIMILARITY_OF_NAMES or (has_equal_settings and value.lower() not in _COMMON_DEFAULTS)
+    has_same_value = has_equal_settings and value.lower() not in _COMMON_DEFAULTS and old_entry.kind != READING
+    is_alike = similarity >= _MIN_SIMILARITY_OF_NAMES or has_same_value
     old_uses, new_uses = (
         Counter(
             (kind, "" if is_alike else setting, rename_in_text(text, names))
@@ -103,7 +107,7 @@ def _are_similar(old: _Use, new: _Use) -> bool:
 
 
 def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
-    pattern = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
+    pattern = re.compile(rf"\$\((?:var|arg|env|optenv) {re.escape(name)}[ )]")
     for entry in outline.entries:
         for setting, text in (("", entry.name), *entry.settings.items()):
             if pattern.search(text):
@@ -111,8 +115,8 @@ def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
 
 
 def rename_in_text(text: str, renamed: Mapping[str, str]) -> str:
-    """Return a text with the new names of arguments and variables."""
-    return re.sub(r"(\$\((?:var|arg) )([^() ]+)", lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)
+    """Return a text with the new names of arguments and of both kinds of variables."""
+    return _SUBSTITUTION.sub(lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)
 
 
 def rename_commands(matches: Sequence[Match]) -> list[Match]:

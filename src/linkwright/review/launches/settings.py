@@ -18,8 +18,10 @@ from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import (
     explain_argument_removal,
     find_setting_reason,
+    is_about_callers,
     is_other_joint_state_publisher_started,
 )
+from linkwright.review.launches.environment_readers import explain_removed_reading
 from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import STARTING_KINDS, IncludedActions, Program, find_including_files
@@ -29,6 +31,7 @@ from linkwright.review.launches.lost_values import explain_enabled_namespace, ex
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
+    ENVIRONMENT_KIND,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
@@ -183,18 +186,19 @@ class SettingChanges:
         self._groups: dict[tuple[str, str], list[tuple[Entry, Location | None, Phrase, Phrase | None]]] = {}
 
     def report_renamed(self) -> None:
-        """Report the arguments and variables with new names."""
-        for old_name, new_name in self._renamed.items():
-            entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
+        """Report the arguments, variables and environment variables with new names."""
+        named = {entry.name: entry for entry in reversed(self._new.entries) if entry.has_value or entry.kind == READING}
+        pairs = ((old_name, named[new_name]) for old_name, new_name in self._renamed.items())
+        for old_name, entry in sorted(pairs, key=lambda pair: (pair[1].span.line, pair[1].span.column)):
             is_argument = entry.kind == "argument" and "value" not in entry.settings
+            reason = explain_argument_removal(old_name, is_ros1=self._old.is_ros1) if is_argument else None
+            if entry.kind == READING:
+                entry = replace(entry, kind=ENVIRONMENT_KIND)
+                _, reason = explain_removed_reading(self._pair, old_name)
             text = phrase(
-                "{entry} renamed to '{name}'", entry=format_title(replace(entry, name=old_name)), name=new_name
+                "{entry} renamed to '{name}'", entry=format_title(replace(entry, name=old_name)), name=entry.name
             )
-            self._pair.add(
-                text,
-                self._pair.location(entry.span),
-                explain_argument_removal(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
-            )
+            self._pair.add(text, self._pair.location(entry.span), reason)
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Collect the changed settings of an action."""
@@ -218,7 +222,9 @@ class SettingChanges:
             if new.kind == READING and reason is None:
                 continue
             keeps_names = reason is not None and self._keeps_names(old, new, pair.name)
-            reason = None if keeps_names else reason
+            is_renamed = new.kind == "argument" and new.name in self._old_names
+            is_kept = keeps_names or (is_renamed and reason is not None and is_about_callers(reason))
+            reason = None if is_kept else reason
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
             transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
             if transform is not None:

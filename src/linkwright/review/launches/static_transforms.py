@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.geometry.single import Quaternion, normalized, quaternion_from_rpy, rpy_from_quaternion
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS
-from linkwright.review.list_changes import list_items
+from linkwright.review.list_changes import split_command
 
-_WORD = re.compile(r"(?:\$\((?:[^()]|\([^()]*\))*\)|\S)+")
 _TRANSLATION = ("x", "y", "z")
 _ANGLES = ("yaw", "pitch", "roll")
 _QUATERNION = ("qx", "qy", "qz", "qw")
@@ -81,7 +79,7 @@ def find_child_frame(program: str, text: str) -> str:
 def _read_transform(program: str, text: str) -> _Transform | None:
     if not program.startswith(TRANSFORM_PUBLISHERS):
         return None
-    words = list_items(text) if text.startswith("[") else _WORD.findall(text)
+    words = split_command(text)
     end = words.index(_END_OF_OPTIONS) if _END_OF_OPTIONS in words else len(words)
     words, rest = words[:end], tuple(words[end:])
     if any(word.startswith("--") for word in words):

@@ -15,6 +15,8 @@ Formatter = Callable[[ast.expr | None], str]
 _MAX_TERMS = 30
 _CONFIGURATIONS = "launch_configurations"
 """The attribute of a launch context with the values of the arguments."""
+ENVIRONMENT_FUNCTION = re.compile(r"(os\.)?(environ\.get|getenv)")
+"""The functions that return the value of an environment variable or a default."""
 _PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "dirname")
@@ -34,6 +36,8 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
     if function == "LaunchConfiguration":
         default = argument_of(node, "default")
         return f"$(var {part(first)})" if default is None else f"$(var {part(first)} {part(default)})"
+    if ENVIRONMENT_FUNCTION.fullmatch(called_name(node)) and len(arguments) > 1:
+        return f"$(env {part(first)} {part(arguments[1]) or repr('')})"
     if function == "get" and isinstance(node.func, ast.Attribute) and is_configurations(python, node.func.value):
         return f"$(var {' '.join(map(part, arguments))})"
     if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):

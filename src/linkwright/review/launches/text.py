@@ -9,12 +9,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launches.chosen_texts import make_choice, quote_text
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.names import is_chosen_value
 from linkwright.review.launches.outlines import split_text, with_condition
 from linkwright.review.launches.python_syntax import find_list_item
-from linkwright.review.launches.python_tests import SUBSTITUTIONS
+from linkwright.review.launches.python_tests import SUBSTITUTIONS, read_tests
 from linkwright.review.launches.substitution_texts import (
     Formatter,
     format_substitution,
@@ -414,12 +415,23 @@ class ExpressionTexts:
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
+        choice = self._format_choice(node, part)
+        if choice is not None:
+            return choice
         if isinstance(node, ast.IfExp) and not is_chosen_value(node):
             values = (
                 unparse_on_one_line(v) if isinstance(v, ast.Constant) else part(v) for v in (node.body, node.orelse)
             )
             return f" if {unparse_on_one_line(node.test)} else ".join(values)
         return unparse_on_one_line(node)
+
+    def _format_choice(self, node: ast.expr, part: Formatter) -> str | None:
+        """Return one of two texts that an argument chooses as an expression of XML launch files; None for others."""
+        test = read_tests(self.python).get(unparse_on_one_line(node.test)) if isinstance(node, ast.IfExp) else None
+        if test is None or not isinstance(node, ast.IfExp):
+            return None
+        body, other = (quote_text(part(value)) for value in (node.body, node.orelse))
+        return None if body is None or other is None else make_choice(test, body, other)
 
     def _format_text_part(self, item: ast.expr, part: Formatter) -> str:
         """Return a part of a formatted text."""

@@ -27,7 +27,7 @@ from linkwright.review.launches.outlines import (
     extract_condition,
     without_condition,
 )
-from linkwright.review.list_changes import EMPTY, list_items, nested_list_items
+from linkwright.review.list_changes import EMPTY, list_items, nested_list_items, split_command
 
 _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""
@@ -41,7 +41,7 @@ _MAX_SETTING_CHARACTERS = 160
 _MAX_NAME_CHARACTERS = 160
 _MAX_COMMAND_WORDS = 4
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
-_CHILD_FRAME = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
+_CHILD_FRAME = "--child-frame-id"
 _TRANSFORM_WORD_COUNTS = (8, 9)
 """The numbers of words of a transform: six or seven numbers and two frames."""
 _NUMBER = re.compile(r"\d+(?:\.\d*)?")
@@ -133,8 +133,7 @@ def find_served_names(entry: Entry) -> list[str]:
     is_manager = entry.name == _MANAGER and text.startswith(_SPAWN_COMMAND)
     text = text.removeprefix(_SPAWN_COMMAND) if is_manager else text
     is_spawner = is_manager or _SPAWNER.fullmatch(entry.name) is not None
-    split = nested_list_items if is_spawner else list_items
-    words = split(text) if text.startswith("[") else text.split()
+    words = nested_list_items(text) if is_spawner and text.startswith("[") else split_command(text)
     if is_spawner and text.startswith("[") and any(word.startswith(("[", "{")) for word in words):
         return []
     if words == [text] and text.startswith("["):
@@ -144,9 +143,8 @@ def find_served_names(entry: Entry) -> list[str]:
         return list(_find_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
-    child = _CHILD_FRAME.search(text)
-    if child is not None:
-        return [child[1]]
+    if _CHILD_FRAME in words[:-1]:
+        return [words[words.index(_CHILD_FRAME) + 1]]
     if entry.name.startswith("tf/") or (words and _NUMBER.fullmatch(words[-1])):
         words = words[:-1]  # the period of the publisher of ROS 1, which an action had that now has the one of tf2_ros
     return [words[-1]] if len(words) in _TRANSFORM_WORD_COUNTS else []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline
-from linkwright.review.list_changes import list_items
+from linkwright.review.list_changes import split_command
 
 _PACKAGE = "topic_tools/"
 _THROTTLE_NUMBER_COUNTS = {"messages": 1, "bytes": 2}
@@ -64,7 +64,7 @@ def _find_output_topics(entry: Entry, outline: LaunchOutline) -> list[str]:
 
 def _read_topics(entry: Entry, arguments: str) -> _Topics:
     """Return the topics that the arguments of a program name; none if they are unknown."""
-    words = list_items(arguments) if arguments.startswith("[") else arguments.split()
+    words = split_command(arguments)
     words = words[: words.index("--ros-args")] if "--ros-args" in words else words
     program = entry.name.removeprefix(_PACKAGE)
     if not entry.name.startswith(_PACKAGE) or not words or "$(" in words[0] or words[0].startswith("["):

@@ -12,7 +12,7 @@ from linkwright.review.launches.included import IncludedActions, find_including_
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.programs import try_read_outline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names
-from linkwright.review.list_changes import list_items
+from linkwright.review.list_changes import split_command
 from linkwright.review.versions import Version, Versions
 
 _ANY_FRAME_PROGRAM = re.compile(r"robot_state_publisher/|state_publisher/|apriltag\w*/|aruco\w*/|mocap\w*/|vrpn\w*/")
@@ -34,7 +34,7 @@ _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _LINK = re.compile(r"<link\s+name=[\"']([^\"']+)[\"']")
 _SUBSTITUTION = re.compile(r"\$[{(][^{}()]*[)}]")
 _FRAME_WORD = re.compile(r"[\w/.-]+")
-_PARENT_FRAME = re.compile(r"--frame-id[ ,]+([^ ,\]]+)")
+_PARENT_FRAME = "--frame-id"
 
 
 def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, versions: Versions) -> Entry | None:
@@ -197,10 +197,9 @@ def _find_parent_and_child(transform: Entry, outline: LaunchOutline) -> list[str
     names = find_served_names(Entry(transform.kind, transform.name, {"arguments": text}, transform.span))
     if not names:
         return []
-    parent = _PARENT_FRAME.search(text)
-    if parent is not None:
-        return [parent[1], names[0]]
-    words = list_items(text) if text.startswith("[") else text.split()
+    words = split_command(text)
+    if _PARENT_FRAME in words[:-1]:
+        return [words[words.index(_PARENT_FRAME) + 1], names[0]]
     index = len(words) - 1 - words[::-1].index(names[0])
     return [words[index - 1], names[0]]
 
