@@ -21,7 +21,7 @@ _REASONS = frozenset(
 def relieve_followed_joints(subjects: Sequence[Subject]) -> list[Subject]:
     """Return the subjects; parameter files that lose the joints which robots of the review lose are not breaking.
 
-    The line about the robot already says what breaks. The parameter file would name joints that no longer exist.
+    The line about the robot already names what breaks. The old parameter file would name joints that no longer exist.
     """
     robots = [subject for subject in subjects if subject.kind in _ROBOT_KINDS]
     joints = {item.name for item in list_lost_names(robots) if not item.is_frame}
