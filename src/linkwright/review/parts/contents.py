@@ -113,11 +113,20 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return False  # robots only show the materials of their links
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
+    if element.tag == _INCLUDE and _is_repeated_include(difference, old, new):
+        return True
     if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
         return False  # the robots are compared without it
     if element.tag in (_INCLUDE, _INSERT):
         return not find_lost_choices(pair, difference) and any(pair.is_read(is_old=is_old) for is_old in sides)
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _is_repeated_include(difference: PartDifference, old: Element, new: Element) -> bool:
+    """Return whether only one version has an include twice, without a condition."""
+    root, element = (new, difference.old_element) if difference.new_element is None else (old, difference.new_element)
+    name = None if element is None else element.attributes.get("filename")
+    return difference.is_whole and any(other.attributes.get("filename") == name for other in root.elements(_INCLUDE))
 
 
 def _is_of_absent_package(pair: PartPair, elements: tuple[Element | None, Element | None]) -> Iterator[bool]:
