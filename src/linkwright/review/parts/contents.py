@@ -38,6 +38,7 @@ from linkwright.review.parts.made_names import makes_same_names
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.properties import find_distinguishing_conditions
 from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
 from linkwright.review.simulators import find_simulator_reason
@@ -209,6 +210,9 @@ class _ReportedDifference:
             words[0] = "gazebo"
         if self.difference.value not in ("", "text", "conditions", BLOCK):
             words.append(self.difference.value)
+            scope = self.pair.new.root if self.macro is None else self.pair.new.macros[self.macro].element
+            conditions = find_distinguishing_conditions(scope, self.difference.new_element)
+            words += [f"[{CONDITION_SEPARATOR.join(conditions)}]"] if conditions else []
         return " ".join(words)
 
     @property
