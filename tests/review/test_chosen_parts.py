@@ -113,3 +113,16 @@ def test_a_property_with_several_definitions_is_named_with_its_conditions(reposi
     assert sentences(subject(compare(repository), path)) == [
         f"macro 'lidar': property kind value{condition}: gpu_ray -> gpu_lidar"
     ]
+
+
+def test_an_include_with_other_conditions_is_named(repository, compare):
+    path = "lidar/urdf/robot.urdf.xacro"
+    include = '<xacro:include filename="head.xacro"/>'
+    text = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:arg name="head" default="true"/>
+      <link name="base"/>{}</robot>"""
+    head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="size" value="1"/></robot>'
+    conditional = f'<xacro:if value="$(arg head)">{include}</xacro:if>'
+    repository.commit({path: text.format(conditional), "lidar/urdf/head.xacro": head})
+    repository.write({path: text.format(include)})
+    lines = sentences(subject(compare(repository), path))
+    assert "include head.xacro: condition if $(arg head) -> always" in lines

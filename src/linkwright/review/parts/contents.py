@@ -213,6 +213,9 @@ class _ReportedDifference:
             scope = self.pair.new.root if self.macro is None else self.pair.new.macros[self.macro].element
             conditions = find_distinguishing_conditions(scope, self.difference.new_element)
             words += [f"[{CONDITION_SEPARATOR.join(conditions)}]"] if conditions else []
+        element = self.difference.new_element
+        if self.difference.value == "conditions" and element is not None and element.tag == _INCLUDE:
+            words.append(element.attributes.get("filename", ""))
         return " ".join(words)
 
     @property
