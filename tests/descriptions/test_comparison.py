@@ -7,7 +7,7 @@ from math import pi
 import pytest
 
 from linkwright.descriptions import examine
-from linkwright.descriptions.comparison import Comparison, Side, as_text, compare
+from linkwright.descriptions.comparison import Comparison, Side, as_text, compare, has_same_contents
 
 ROBOT = """\
 <robot name="r">
@@ -365,3 +365,39 @@ def test_locations_include_macro_calls():
         "robot_description:3:49 called at robot_description:6:3\n"
         "1 difference\n"
     )
+
+
+@pytest.mark.parametrize(
+    ("color", "expected"),
+    [
+        ("0.2 0.2 0.2 1", []),
+        (
+            "0.2 0.2 0.9 1",
+            [("visual 1 color rgba", "0.2 0.2 0.2 1", "0.2 0.2 0.9 1"), ("visual 1 material", "grey", None)],
+        ),
+    ],
+)
+def test_a_material_that_loses_its_name_and_keeps_its_color_looks_the_same(color, expected):
+    text = '<material name="{}"><color rgba="{}"/></material></visual>\n    <visual><origin'
+    old, new = (
+        ROBOT.replace("</visual>\n    <visual><origin", text.format(*values))
+        for values in (("grey", "0.2 0.2 0.2 1"), ("", color))
+    )
+    found = [difference[3:] for difference in differences_between(old, new)]
+    assert sorted(found) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "is_same"),
+    [
+        ("a.dae", "<a>\n  <p>1 2\n</p></a>\n", True),
+        ("a.dae", "<a><p>12</p></a>", False),
+        ("a.dae", "<a><p>1 2</p></a><b/>", False),
+        ("a.obj", "<a>\n<p>1 2</p></a>", False),
+    ],
+)
+def test_the_formatting_of_collada_files_is_no_content(tmp_path, name, text, is_same):
+    files = tmp_path / name, tmp_path / f"new_{name}"
+    files[0].write_text("<a><p>1 2</p></a>")
+    files[1].write_text(text)
+    assert has_same_contents(*files) == is_same

@@ -206,3 +206,25 @@ def test_only_the_callers_that_fail_are_named(package, compare):
     changes = subject(compare(package), PATH).changes
     (change,) = [item for item in changes if str(item.sentence).startswith("can no longer be read: ")]
     assert str(change.reason) == "these files fail: 'arm_description/launch/plain.launch.py'"
+
+
+def test_callers_that_pass_a_renamed_argument_are_compared_with_the_new_one(repository, compare):
+    robot = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
+      <xacro:arg name="{name}" default="1"/><link name="base"/><link name="tip"/>
+      <joint name="j" type="fixed"><parent link="base"/><child link="tip"/><origin xyz="0 0 $(arg {name})"/></joint>
+    </robot>
+    """
+    launch = (
+        '<launch><let name="d" value="$(command \'xacro $(find-pkg-share arm)/arm.urdf.xacro {name}:=2\')"/></launch>'
+    )
+    texts = [
+        {"arm/arm.urdf.xacro": robot.format(name=name), "arm/launch/arm.launch.xml": launch.format(name=name)}
+        for name in ("height", "arm_height")
+    ]
+    repository.commit(
+        {"arm/package.xml": PACKAGE["arm_description/package.xml"].replace("arm_description", "arm"), **texts[0]}
+    )
+    repository.write(texts[1])
+    review_subject = subject(compare(repository), "arm/arm.urdf.xacro")
+    assert review_subject.cases == ["arm_height:=2"]
+    assert not any("origin" in sentence for sentence in sentences(review_subject))

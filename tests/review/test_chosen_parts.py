@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import ARM, PACKAGE_XML
+from tests.review.conftest import sentences, subject
 
 PATH = "a/urdf/base.xacro"
 ROBOT = "arm_description/urdf/arm.urdf.xacro"
@@ -96,3 +97,32 @@ def test_further_condition_that_a_default_does_not_fulfill_is_breaking(
     repository.write({"a/urdf/r.urdf.xacro": text % (argument, new_part)})
     reasons = {str(change.reason) for _, change in compare(repository).breaking_changes}
     assert reasons == ({"robots of callers that do not pass 'tool' lack the part"} if is_breaking else set())
+
+
+@pytest.mark.parametrize(("count", "condition"), [(2, " [if ${gpu}]"), (1, "")])
+def test_a_property_with_several_definitions_is_named_with_its_conditions(repository, compare, count, condition):
+    path = "lidar/urdf/lidar.xacro"
+    definitions = (
+        '<xacro:if value="${gpu}"><xacro:property name="kind" value="gpu_ray"/></xacro:if>',
+        '<xacro:unless value="${gpu}"><xacro:property name="kind" value="ray"/></xacro:unless>',
+    )
+    text = f"""<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="lidar" params="gpu">
+      {"".join(definitions[:count])}<gazebo><sensor name="s" type="${{kind}}"/></gazebo></xacro:macro></robot>"""
+    repository.commit({path: text})
+    repository.write({path: text.replace("gpu_ray", "gpu_lidar")})
+    assert sentences(subject(compare(repository), path)) == [
+        f"macro 'lidar': property kind value{condition}: gpu_ray -> gpu_lidar"
+    ]
+
+
+def test_an_include_with_other_conditions_is_named(repository, compare):
+    path = "lidar/urdf/robot.urdf.xacro"
+    include = '<xacro:include filename="head.xacro"/>'
+    text = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:arg name="head" default="true"/>
+      <link name="base"/>{}</robot>"""
+    head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="size" value="1"/></robot>'
+    conditional = f'<xacro:if value="$(arg head)">{include}</xacro:if>'
+    repository.commit({path: text.format(conditional), "lidar/urdf/head.xacro": head})
+    repository.write({path: text.format(include)})
+    lines = sentences(subject(compare(repository), path))
+    assert "include head.xacro: condition if $(arg head) -> always" in lines

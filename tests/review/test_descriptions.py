@@ -437,3 +437,12 @@ def test_extensions_of_renamed_links_and_joints_are_compared_with_the_old_ones(p
         "extension 'transmission arm_drive': @name drive -> arm_drive",
         "extension 'gazebo arm_probe': sensor scan update_rate 10 -> 30",
     ]
+
+
+def test_a_macro_that_robots_read_is_compared_and_not_listed_with_the_other_files(package, compare):
+    joint = MACRO[MACRO.index('    <joint name="${name}_joint"') : MACRO.index("  </xacro:macro>")]
+    moved = MACRO.replace(joint, "").replace('    <link name="${name}">', joint + '    <link name="${name}">')
+    assert moved != MACRO
+    package.write({"arm_description/urdf/segment.xacro": moved})
+    result = compare(package)
+    assert (list(result.subjects), result.other_files) == ([], [])

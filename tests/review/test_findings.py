@@ -43,6 +43,12 @@ def test_new_and_fixed_findings_are_reported(package, compare):
     assert finding_codes(compare(package, "HEAD~1..HEAD").fixed_findings) == ["LW705"]
 
 
+def test_removed_file_has_no_fixed_findings(package, compare):
+    package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
+    package.commit({SEGMENT: None, PATH: '<robot name="arm"><link name="base_link"/></robot>'})
+    assert compare(package, "HEAD~1..HEAD").fixed_findings == []
+
+
 def test_unreadable_robot_has_no_fixed_findings(package, compare):
     package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
     package.commit({PATH: WITH_UNUSED.replace("</robot>", "<</robot>")})

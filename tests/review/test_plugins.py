@@ -283,3 +283,14 @@ def test_repeated_slashes_count_as_one(repository, compare, new, is_breaking):
     repository.commit({PATH: robot_text(drive.format("//scan"))})
     repository.write({PATH: robot_text(drive.format(new))})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+def test_plugins_that_move_into_a_gazebo_element_are_matched_by_name(repository, compare):
+    plugin = '<plugin name="{}" filename="libmimic.so"><joint>{}</joint></plugin>'
+    old = [plugin.format(name, "j") for name in ("a", "b")]
+    new = [plugin.format(name, "k") for name in ("b", "c", "a")]
+    repository.commit({PATH: robot_text(DOCK, *old), "a/package.xml": PACKAGE_XML})
+    repository.write({PATH: robot_text(DOCK.replace("libdock", "libbay"), "<gazebo>", *new, "</gazebo>")})
+    lines = sentences(subject(compare(repository), PATH))
+    replaced = [line for line in lines if "replaced by" in line]
+    assert [line.count(f"plugin '{name}'") for line, name in zip(sorted(replaced), "ab", strict=True)] == [2, 2]

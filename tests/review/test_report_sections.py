@@ -331,9 +331,9 @@ def test_robots_with_only_the_changes_of_a_shared_file_are_one_section():
     assert "0 breaking changes, 1 change," in text
 
 
-def make_shared_change(*names: str) -> Change:
+def make_shared_change(*names: str, name: str = "j") -> Change:
     sentence = phrase(
-        "{subject} '{name}': {property} {old} -> {new}", subject="joint", name="j", property="p", old=1, new=2
+        "{subject} '{name}': {property} {old} -> {new}", subject="joint", name=name, property="p", old=1, new=2
     )
     return Change(sentence, location=Location("shared.xacro", 3, 1), other_names=names)
 
@@ -352,6 +352,13 @@ def test_other_names_of_a_change_to_a_shared_file_are_named(names, expected):
     kind = SubjectKind.DESCRIPTION
     subjects = [make_subject(f"{name}.urdf.xacro", [change], kind) for name, change in changes.items()]
     assert f"  {expected}\n" in as_text(Review("main", "topic", subjects))
+
+
+def test_the_first_name_of_a_repeated_change_is_named_if_the_other_file_has_the_rest():
+    changes = {"a": make_shared_change(name="right"), "b": make_shared_change("right", name="left")}
+    kind = SubjectKind.DESCRIPTION
+    subjects = [make_subject(f"{name}.urdf.xacro", [change], kind) for name, change in changes.items()]
+    assert "as in a.urdf.xacro, here also 'left'\n" in as_text(Review("main", "topic", subjects))
 
 
 @pytest.mark.parametrize(

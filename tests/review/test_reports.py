@@ -252,6 +252,16 @@ def test_only_the_arguments_that_differ_are_named():
     assert "a change (with tool:=probe)" in as_text(Review("a", "b", [subject]))
 
 
+@pytest.mark.parametrize(
+    ("names", "expected"), [("ab", ["'a' is odd", "'b' is odd"]), ("abc", ["'a' is odd; also 'b', 'c'"])]
+)
+def test_alike_findings_of_a_file_are_one_line(names, expected):
+    span = SourceText("a.urdf", "x").span(0, 1)
+    findings = [Diagnostic("URDF999", phrase("'{name}' is odd", name=name), span=span) for name in names]
+    lines = as_text(Review("a", "b", new_findings=findings)).splitlines()
+    assert lines[1:-2] == [f"  a.urdf:1: error[URDF999] {text}" for text in expected]
+
+
 def test_equal_findings_at_several_lines_are_one_line():
     spans = [SourceText("a.urdf", "x\n" * 5).span(offset, offset + 1) for offset in (0, 2, 4)]
     findings = [Diagnostic("URDF999", phrase("wrong"), span=span) for span in spans]

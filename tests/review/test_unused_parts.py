@@ -35,3 +35,14 @@ def test_removed_part_that_nothing_could_use_breaks_nothing(package, compare, in
     result = compare(package)
     assert any("removed" in sentence for sentence in sentences(subject(result, part)))
     assert any("removed" in sentence for sentence in breaking(result)) == is_breaking
+
+
+@pytest.mark.parametrize(("count", "is_told"), [(2, False), (1, True)])
+def test_an_include_that_a_file_has_twice_changes_nothing_if_one_leaves(package, compare, count, is_told):
+    path = "arm_description/urdf/tools.xacro"
+    include = '<xacro:include filename="$(find arm_description)/urdf/segment.xacro"/>'
+    macro = '<xacro:macro name="tool"><link name="t"/></xacro:macro>'
+    text = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{{}}{macro}</robot>'
+    package.commit({path: text.format(include * count)})
+    package.write({path: text.format(include * (count - 1))})
+    assert any(item.path == path for item in compare(package).subjects) == is_told

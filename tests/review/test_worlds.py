@@ -160,6 +160,10 @@ HOUSE = """<sdf version="1.9"><world name="house">
         ("<include><pose>2 0 0 0 0 0</pose><uri>model://lamp</uri></include>", "",
          ["world house include model://lamp removed: pose 2 0 0 0 0 0"], False),
         ("model://crate", "model://barrel", ["world house include box uri: model://crate -> model://barrel"], False),
+        ("<include><pose>2", ("<include><name>lamp_1</name><uri>model://lamp</uri><pose>3 0  0 0 0 0</pose>"
+         "<plugin name='p' filename='libp.so'><level>1</level></plugin></include><include><pose>2"),
+         [("world house include lamp_1 added: uri model://lamp, pose 3 0 0 0 0 0, "
+          "plugin 'p' (filename=libp.so, level 1)")], False),
     ],
 )  # fmt: skip
 def test_included_models_are_compared_by_address(repository, compare, old, new, expected, is_breaking):

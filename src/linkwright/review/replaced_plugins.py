@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
@@ -51,8 +51,16 @@ def _format_plugin(plugin: Element) -> Phrase:
 def merge_replaced_plugins(differences: Iterable[Difference]) -> list[Difference]:
     """Return the differences, with replaced plugins as one difference each.
 
-    A removed and an added plugin match if they have the same name, file or role.
+    A removed and an added plugin match if they have the same name or, of the others, the same role.
     """
+    result = list(differences)
+    for make_keys in (_make_name_keys, _make_role_keys):
+        result = _merge_matching(result, make_keys)
+    return result
+
+
+def _merge_matching(differences: Sequence[Difference], make_keys: Callable[[Element], set[str]]) -> list[Difference]:
+    """Return the differences, with a removed and an added plugin that share a key as one difference."""
     result = list(differences)
     candidates = [
         (candidate, plugin)
@@ -61,12 +69,11 @@ def merge_replaced_plugins(differences: Iterable[Difference]) -> list[Difference
     ]
     for difference in tuple(result):
         old_plugin = _find_only_plugin(difference) if is_removed(difference) else None
-        replacement_index = (
-            None if old_plugin is None else _find_replacement(old_plugin, [plugin for _, plugin in candidates])
-        )
-        if old_plugin is None or replacement_index is None:
+        keys = set() if old_plugin is None else make_keys(old_plugin)
+        number = next((number for number, (_, plugin) in enumerate(candidates) if keys & make_keys(plugin)), None)
+        if old_plugin is None or number is None:
             continue
-        added, new_plugin = candidates.pop(replacement_index)
+        added, new_plugin = candidates.pop(number)
         names = find_plugin_name(old_plugin), find_plugin_name(new_plugin)
         locations = difference.old_place, added.new_place
         index = next(index for index, candidate in enumerate(result) if candidate is added)
@@ -75,18 +82,6 @@ def merge_replaced_plugins(differences: Iterable[Difference]) -> list[Difference
         )
         result = [candidate for candidate in result if candidate is not difference]
     return result
-
-
-def _find_replacement(plugin: Element, candidates: Sequence[Element]) -> int | None:
-    """Return the index of the plugin that replaces a removed plugin, or None if there is none."""
-    return next(
-        (
-            index
-            for index, candidate in enumerate(candidates)
-            if not _make_replacement_keys(plugin).isdisjoint(_make_replacement_keys(candidate))
-        ),
-        None,
-    )
 
 
 def _find_only_plugin(difference: Difference) -> Element | None:
@@ -99,9 +94,12 @@ def _find_only_plugin(difference: Difference) -> Element | None:
     return plugins[0] if is_alone and len(plugins) == 1 else None
 
 
-def _make_replacement_keys(plugin: Element) -> set[str]:
-    """Return the name and the roles of a plugin. A plugin that replaces it shares one of them."""
-    return {f"name {find_plugin_name(plugin)}", *(f"role {role}" for role in _find_roles(plugin))}
+def _make_name_keys(plugin: Element) -> set[str]:
+    return {find_plugin_name(plugin)} - {""}
+
+
+def _make_role_keys(plugin: Element) -> set[str]:
+    return set(_find_roles(plugin))
 
 
 def _find_roles(plugin: Element) -> Iterator[str]:

@@ -77,6 +77,7 @@ from linkwright.review.notes import (
 )
 from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
+from linkwright.review.parts.expanded import find_read_files
 from linkwright.review.removed_headers import drop_told_headers
 from linkwright.review.removed_packages import (
     find_removed_packages,
@@ -95,6 +96,7 @@ from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.unchanged_contents import keeps_contents
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
+from linkwright.review.users.followed_joints import relieve_followed_joints
 from linkwright.review.users.ignored_packages import relieve_ignored_packages
 from linkwright.review.users.left_collision_pairs import find_left_collision_pairs
 from linkwright.review.users.left_robot_names import find_left_robot_names
@@ -207,7 +209,7 @@ class _Reviewer:
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
         reported = _list_reported_paths(all_subjects)
         all_subjects, notes = remove_consequences(self._versions, all_subjects)
-        all_subjects = self._add_users_of_lost_names(all_subjects)
+        all_subjects = relieve_followed_joints(self._add_users_of_lost_names(all_subjects))
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         removed_packages = find_removed_packages(all_subjects)
         all_subjects = merge_removed_packages(self._versions, all_subjects)
@@ -217,7 +219,7 @@ class _Reviewer:
         readable, unexpanded_notes = group_unexpanded(readable)
         compared = {path for rule, *paths in pairs if rule.kind not in _LISTED_KINDS for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
-        reported |= self._maps.keys()
+        reported |= self._maps.keys() | find_read_files(self._versions, all_subjects)
         other_files = [
             file
             for file in self._changed_files

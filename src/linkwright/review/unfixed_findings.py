@@ -32,9 +32,9 @@ def drop_unfixed_findings(
 ) -> list[Diagnostic]:
     """Return the fixed findings without those that only cannot be found any more.
 
-    A mesh that is missing now has no size. A package whose manifest has not changed, and whose launch files still use
-    another package, still does not name it, also if a third package brings it now. So does a package that names it
-    only for its tests.
+    A removed file has no findings, and a mesh that is missing now has no size. A package whose manifest has not
+    changed, and whose launch files still use another package, still does not name it, also if a third package brings
+    it now. So does a package that names it only for its tests.
 
     Args:
         versions: both versions.
@@ -43,10 +43,13 @@ def drop_unfixed_findings(
         new_paths: the new paths of renamed files, by old path.
     """
     changed = {path for file in versions.changed_files for path in (file.old_path, file.new_path) if path}
+    removed = {file.old_path for file in versions.changed_files if file.new_path is None}
     without_meshes = {_get_path(finding) for finding in added if finding.code == _MISSING_MESH_CODE}
 
     def is_fixed(finding: Diagnostic) -> bool:
         path = _get_path(finding)
+        if path in removed:
+            return False
         if finding.code.startswith(_MESH_RULES) and finding.code != _MISSING_MESH_CODE:
             return new_paths.get(path, path) not in without_meshes
         if finding.code != _UNDECLARED_CODE:

@@ -6,7 +6,7 @@ Changes to links, joints, origins, masses and other parts are reported with thei
 from linkwright.descriptions.comparison.compare import Comparison, Side, compare
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Kind, Subject
 from linkwright.descriptions.comparison.elements import ElementComparison, find_remapped_name
-from linkwright.descriptions.comparison.file_contents import has_same_bytes
+from linkwright.descriptions.comparison.file_contents import has_same_contents
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_lost_interfaces
 from linkwright.descriptions.comparison.numbers import round_numbers
@@ -27,7 +27,7 @@ __all__ = [
     "compare",
     "find_lost_interfaces",
     "find_remapped_name",
-    "has_same_bytes",
+    "has_same_contents",
     "joined_block",
     "round_numbers",
     "sentence",

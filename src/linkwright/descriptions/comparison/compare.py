@@ -10,6 +10,7 @@ from pathlib import Path
 from linkwright.descriptions.comparison.difference import Difference, DifferenceLocation, Subject, location_of
 from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.facts import (
+    MATERIAL,
     Block,
     Fact,
     collision_blocks,
@@ -19,7 +20,7 @@ from linkwright.descriptions.comparison.facts import (
     nearest,
     visual_blocks,
 )
-from linkwright.descriptions.comparison.file_contents import content_hash, content_size, has_same_bytes
+from linkwright.descriptions.comparison.file_contents import content_hash, content_size, has_same_contents
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.descriptions.comparison.renames import RenameSearch
@@ -248,7 +249,7 @@ class _Comparer:
             for name, new_element in new_meshes.items():
                 old_name = old_uris.get(self.new.normalize(name))
                 old_file, new_file = None if old_name is None else self.old.mesh(old_name), self.new.mesh(name)
-                if old_name and old_file and new_file and not has_same_bytes(old_file, new_file):
+                if old_name and old_file and new_file and not has_same_contents(old_file, new_file):
                     values = _compare_contents(old_file, new_file)
                     locations = location_of(old_meshes[old_name]), location_of(new_element)
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
@@ -279,6 +280,8 @@ class _Comparer:
             old_fact, new_fact = old.facts.get(fact), new.facts.get(fact)
             if old_fact and new_fact and old_fact.equals(new_fact, self.old.normalize, self.new.normalize):
                 continue
+            if fact == MATERIAL and None in (old_fact, new_fact) and old.has_color_of(new):
+                continue  # a material with and without a name looks the same
             yield _make_change(subject, name, f"{block} {fact}".strip(), (old_fact, old), (new_fact, new))
 
 

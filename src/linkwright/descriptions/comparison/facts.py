@@ -22,6 +22,10 @@ RELATIVE_TOLERANCE = 1e-6
 COLOR_TOLERANCE = 0.5 / 255
 """The difference up to which color channels from 0 to 1 are equal: half a step of images with 8 bits."""
 
+MATERIAL = "material"
+"""The name of the fact about the name of a material."""
+_COLOR = "color rgba"
+
 Normalize = Callable[[str], str]
 
 
@@ -103,6 +107,11 @@ class Block:
         return self.facts.keys() == other.facts.keys() and all(
             fact.equals(other.facts[name], normalize, normalize_other) for name, fact in self.facts.items()
         )
+
+    def has_color_of(self, other: Block) -> bool:
+        """Return whether two visuals have colors, and the same one."""
+        color, other_color = self.facts.get(_COLOR), other.facts.get(_COLOR)
+        return color is not None and other_color is not None and color.equals(other_color, str, str)
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
         """Add a property with one number, unless the number is None."""
@@ -203,10 +212,10 @@ def _make_inertial_block(inertial: Inertial) -> Block:
 def _make_visual_block(visual: Visual) -> Block:
     block = _make_shape_block("visual", visual)
     element, material = nearest(visual.element, "material"), visual.material
-    block.words("material", visual.material_name, element, "name")
+    block.words(MATERIAL, visual.material_name, element, "name")
     if material is not None and material.rgba is not None:
         child = nearest(material.element, "color")
-        block.facts["color rgba"] = Fact("", material.rgba, "", child or element, "rgba", min_tolerance=COLOR_TOLERANCE)
+        block.facts[_COLOR] = Fact("", material.rgba, "", child or element, "rgba", min_tolerance=COLOR_TOLERANCE)
     if material is not None and material.texture:
         child = nearest(material.element, "texture")
         block.words("texture", material.texture, child or element, "filename")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.descriptions.comparison import has_same_bytes
+from linkwright.descriptions.comparison import has_same_contents
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.files.git_repository import read_lfs_pointer
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
@@ -23,7 +23,7 @@ _TOLERANCE = 1e-6
 def compare_meshes(pair: FilePair) -> None:
     """Compare two versions of a mesh file."""
     files = pair.old_file, pair.new_file
-    if has_same_bytes(*files):
+    if has_same_contents(*files):
         return
     sizes = [None if read_lfs_pointer(file) else file.stat().st_size for file in files]
     if None not in sizes and sizes[0] != sizes[1]:

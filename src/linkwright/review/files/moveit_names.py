@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import joint_name_reason
@@ -150,10 +150,7 @@ class MoveItRules:
         lost = [name for name in names if not any(can_evaluate_to(joint, name) for joint in self._new_joints)]
         if lost and self._are_unknown(lost):
             return None
-        return counted(
-            "MoveIt finds no controller for the joint {names}", "MoveIt finds no controller for the joints {names}",
-            len(lost), names=quoted_names(lost),
-        ) if lost else None  # fmt: skip
+        return make_uncontrolled_reason(lost) if lost else None
 
     def _are_unknown(self, joints: Collection[str]) -> bool:
         """Return whether the semantic descriptions of the repository have joints, but none of these."""
@@ -169,6 +166,14 @@ class MoveItRules:
         """
         names = self._names[pattern]
         return bool(names) and name not in names and not any(can_evaluate_to(new_name, name) for new_name in names)
+
+
+def make_uncontrolled_reason(joints: Sequence[str]) -> Phrase:
+    """Return the reason why a controller that MoveIt commands must not lose joints."""
+    return counted(
+        "MoveIt finds no controller for the joint {names}", "MoveIt finds no controller for the joints {names}",
+        len(joints), names=quoted_names(joints),
+    )  # fmt: skip
 
 
 @cached_in_review(maxsize=4)

@@ -97,12 +97,18 @@ def format_added_element(path: str, element: Element) -> Phrase:
         path: the path of the element, with the names of elements that were added with the same contents.
         element: the XML element.
     """
-    contents = joined(names) if (names := list(summarize_element(element))) else None
+    contents = joined([*_list_place(element), *names]) if (names := list(summarize_element(element))) else None
     if contents is None:
         element, path = _find_only_descendant(element, path)
         contents = format_contents(element)
     text = phrase("{element} added", element=f"{path} {format_own_content(element)}".strip())
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
+
+
+def _list_place(element: Element) -> Iterator[str]:
+    """Yield the address and the pose of an added model."""
+    children = (element.first(tag) for tag in ("uri", "pose"))
+    yield from (f"{child.tag} {' '.join(child.text().split())}" for child in children if child is not None)
 
 
 def _find_only_descendant(element: Element, path: str) -> tuple[Element, str]:

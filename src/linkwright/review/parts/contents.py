@@ -27,6 +27,7 @@ from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
+from linkwright.review.parts.argument_scopes import takes_argument, takes_parameter
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.default_conditions import find_missing_part_reason, find_missing_plugin_reason
 from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
@@ -35,8 +36,9 @@ from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.item_comparisons import make_comparison
 from linkwright.review.parts.made_names import makes_same_names
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
-from linkwright.review.parts.outline import PROPERTY, STATEMENTS, uses_name
+from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.properties import find_distinguishing_conditions
 from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
 from linkwright.review.simulators import find_simulator_reason
@@ -113,11 +115,28 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return False  # robots only show the materials of their links
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
+    if element.tag == _INCLUDE and _is_repeated_include(difference, old, new):
+        return True
     if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
         return False  # the robots are compared without it
     if element.tag in (_INCLUDE, _INSERT):
         return not find_lost_choices(pair, difference) and any(pair.is_read(is_old=is_old) for is_old in sides)
+    macro = _find_macro(pair, new)
+    if takes_parameter(macro, difference) or takes_argument(macro, difference):
+        return False  # robots that pass the argument as the parameter have the same value as before
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _find_macro(pair: PartPair, element: Element) -> MacroOutline | None:
+    """Return the new macro with an element; None for another element, such as the root of the file."""
+    return next((macro for macro in pair.new.macros.values() if macro.element is element), None)
+
+
+def _is_repeated_include(difference: PartDifference, old: Element, new: Element) -> bool:
+    """Return whether only one version has an include twice, without a condition."""
+    root, element = (new, difference.old_element) if difference.new_element is None else (old, difference.new_element)
+    name = None if element is None else element.attributes.get("filename")
+    return difference.is_whole and any(other.attributes.get("filename") == name for other in root.elements(_INCLUDE))
 
 
 def _is_of_absent_package(pair: PartPair, elements: tuple[Element | None, Element | None]) -> Iterator[bool]:
@@ -191,6 +210,12 @@ class _ReportedDifference:
             words[0] = "gazebo"
         if self.difference.value not in ("", "text", "conditions", BLOCK):
             words.append(self.difference.value)
+            scope = self.pair.new.root if self.macro is None else self.pair.new.macros[self.macro].element
+            conditions = find_distinguishing_conditions(scope, self.difference.new_element)
+            words += [f"[{CONDITION_SEPARATOR.join(conditions)}]"] if conditions else []
+        element = self.difference.new_element
+        if self.difference.value == "conditions" and element is not None and element.tag == _INCLUDE:
+            words.append(element.attributes.get("filename", ""))
         return " ".join(words)
 
     @property
@@ -318,7 +343,8 @@ class _ReportedDifference:
     def reason(self) -> Phrase | None:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
-        if self._is_same_by_default:
+        macro = None if self.macro is None else self.pair.new.macros.get(self.macro)
+        if self._is_same_by_default or takes_parameter(macro, difference):
             return None
         if old is None:
             return self._find_default_topic_reason() or self._find_repeated_call_reason()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from linkwright.descriptions import Description
-from linkwright.review.changes import FILE, ExpandedElement
+from linkwright.review.changes import FILE, ExpandedElement, Subject
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
@@ -20,6 +20,17 @@ def find_expanded_elements(versions: Versions, old: Description, new: Descriptio
     for version, description in ((versions.old, old), (versions.new, new)):
         paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
         yield from _find_used_elements(version, description, {path for path in paths if path})
+
+
+def find_read_files(versions: Versions, subjects: Iterable[Subject]) -> set[str]:
+    """Return the paths of the changed files that compared robots read in both versions, as included files."""
+    expanded = {element for subject in subjects for element in subject.expanded}
+    return {
+        path
+        for file in versions.changed_files
+        if (path := file.new_path) is not None and path == file.old_path
+        if all(ExpandedElement(path, FILE, is_old) in expanded for is_old in (True, False))
+    }
 
 
 def _find_used_elements(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedElement]:

@@ -53,6 +53,16 @@ def compare_properties(pair: PartPair, graph: IncludeGraph) -> None:
             _report_moved_values(pair, name, old[name], definitions)
 
 
+def find_distinguishing_conditions(scope: Element, element: Element | None) -> tuple[str, ...]:
+    """Return the conditions of a property that a file or macro defines several times; none for other elements."""
+    if element is None or element.tag != PROPERTY:
+        return ()
+    name = element.attributes.get("name")
+    items = [item for item in iterate_items(scope) if item.element.tag == PROPERTY]
+    items = [item for item in items if item.element.attributes.get("name") == name]
+    return next((item.conditions for item in items if item.element is element and len(items) > 1), ())
+
+
 def _read_definitions(outline: Outline) -> dict[str, list[_Definition]]:
     """Return the definitions of properties with values, by name."""
     definitions: dict[str, list[_Definition]] = defaultdict(list)

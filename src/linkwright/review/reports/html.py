@@ -10,6 +10,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
 from linkwright.review.excerpts import shorten
+from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.path_plots import PLOT_STYLE, draw_path_plot
 from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
 from linkwright.review.reports.sections import (
@@ -31,7 +32,6 @@ from linkwright.review.reports.sentences import (
     format_paths,
     format_repeated,
     get_path_state,
-    group_findings,
     list_other_files,
 )
 

@@ -11,6 +11,7 @@ from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject
 from linkwright.review.excerpts import differing_excerpts, shorten
+from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.sections import (
     Section,
     divide_report,
@@ -28,7 +29,6 @@ from linkwright.review.reports.sentences import (
     format_paths,
     format_repeated,
     get_path_state,
-    group_findings,
     list_other_files,
 )
 

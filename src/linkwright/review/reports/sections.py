@@ -176,8 +176,10 @@ def _find_more_names(first: Change, change: Change) -> list[str] | None:
     """
     if len(change.other_names) <= len(first.other_names):
         return []
-    is_same = set(first.other_names) <= set(change.other_names)
-    return [name for name in change.other_names if name not in first.other_names] if is_same else None
+    first_names, names = first.other_names, change.other_names
+    if first.name in names:
+        first_names, names = (first.name, *first_names), (change.name, *names)
+    return [name for name in names if name not in first_names] if set(first_names) <= set(names) else None
 
 
 def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Phrase, counted, joined, joined_first, phrase, quoted, quoted_names
-from linkwright.diagnostics.phrase import as_phrase
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted, quoted_names
 from linkwright.review.argument_sets import ARGUMENT, find_distinct_arguments
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject, SubjectKind, ViewImages
 from linkwright.review.excerpts import shorten
@@ -69,7 +68,7 @@ def format_change(change: Change) -> Phrase:
     """Return a change in one line, with the other links or joints, or the number of locations."""
     names: Sequence[str] = change.other_names
     if not names and change.other_locations:
-        return _add_count(change.sentence, 1 + len(change.other_locations))
+        return add_count(change.sentence, 1 + len(change.other_locations))
     if not names:
         return change.sentence
     names = _shorten_paths(str(change.sentence.arguments.get("parameter", "")), names)
@@ -191,22 +190,8 @@ def format_repeated(repeat: Repeat) -> Phrase:
     return phrase("{change}, but not: {changes}", change=text, changes=joined(missing))
 
 
-def group_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings, with equal findings in a file merged.
-
-    The message contains their number.
-    """
-    groups: dict[Hashable, list[Diagnostic]] = {}
-    for finding in findings:
-        file = None if finding.span is None else finding.span.file
-        groups.setdefault((finding.code, file, str(finding.message)), []).append(finding)
-    return [
-        first if not others else first.with_changes(message=_add_count(as_phrase(first.message), 1 + len(others)))
-        for first, *others in groups.values()
-    ]
-
-
-def _add_count(text: Phrase, count: int) -> Phrase:
+def add_count(text: Phrase, count: int) -> Phrase:
+    """Return a sentence with the number of equal things that it is about."""
     return phrase("{change} ({count} times)", change=text, count=count)
 
 

@@ -10,6 +10,7 @@ from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
 from linkwright.review.excerpts import shorten
+from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.sections import Section, divide_report, format_summary
 from linkwright.review.reports.sentences import (
     format_alike,
@@ -18,7 +19,6 @@ from linkwright.review.reports.sentences import (
     format_figure_name,
     format_repeated,
     get_path_state,
-    group_findings,
     list_other_files,
 )
 

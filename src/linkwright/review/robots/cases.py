@@ -260,7 +260,32 @@ def _collect_argument_sets(pair: FilePair) -> dict[str, _ArgumentValues]:
                 known.is_of_old = True
             else:
                 known.is_of_new = True
-    return dict(sorted(sets.items(), key=lambda item: item[1].doubt))
+    return dict(sorted(_join_renamed(sets).items(), key=lambda item: item[1].doubt))
+
+
+def _join_renamed(sets: Mapping[str, _ArgumentValues]) -> dict[str, _ArgumentValues]:
+    """Return argument sets, with an old and a new one as one if they only differ in arguments of one version each.
+
+    The callers then pass the new arguments in place of the old ones. Each version would ignore those of the other.
+    """
+    old_sets = {name: values for name, values in sets.items() if values.is_of_old and not values.is_of_new}
+    new_sets = {name: values for name, values in sets.items() if values.is_of_new and not values.is_of_old}
+    common = {name for values in sets.values() if values.is_of_old for name in values.new}
+    common &= {name for values in sets.values() if values.is_of_new for name in values.new}
+    result = dict(sets)
+    for name, values in new_sets.items():
+        shared = {key: value for key, value in values.new.items() if key in common}
+        candidates = (
+            (old_name, old)
+            for old_name, old in old_sets.items()
+            if {key: value for key, value in old.new.items() if key in common} == shared
+            if not common >= old.new.keys() and not common >= values.new.keys()
+        )
+        old_name, old = next(candidates, ("", None))
+        if old is not None:
+            del result[old_name], old_sets[old_name]
+            result[name] = _ArgumentValues(old.old, values.new, max(old.doubt, values.doubt), True, True)
+    return result
 
 
 def _find_called_sets(version: Version, path: str) -> list[ArgumentSet]:

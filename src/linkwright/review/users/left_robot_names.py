@@ -99,7 +99,7 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
         versions: both versions of the repository.
         subjects: the compared files, whose breaking changes tell what is lost.
     """
-    lost = list(dict.fromkeys(_list_lost_names(subjects)))
+    lost = list(dict.fromkeys(list_lost_names(subjects)))
     files = RobotFiles(versions.new)
     lost = [item for item in lost if not files.may_define(item)] if lost else []
     for item in lost:
@@ -110,7 +110,7 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
                 yield path, change
 
 
-def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[RobotName]:
+def list_lost_names(subjects: Sequence[Subject]) -> Iterator[RobotName]:
     """Yield the frames and moving joints that files lost with all argument sets."""
     templates = {
         frame_reason("").template: True,
@@ -122,12 +122,16 @@ def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[RobotName]:
         for change in subject.changes:
             if change.reason is None or change.reason.template not in templates or change.cases:
                 continue
-            arguments = change.reason.arguments
-            names = [str(arguments["name"])] if "name" in arguments else _QUOTED_NAME.findall(str(arguments["names"]))
-            for word in (*names, *_list_other_names(change)):
+            for word in (*list_names_of_reason(change.reason), *_list_other_names(change)):
                 is_lost = _PLAIN_NAME.fullmatch(word) and word.strip("/") not in _COMMON_FRAMES
                 if is_lost and subject.kind is not SubjectKind.PART:
                     yield RobotName(word.strip("/"), subject.path, templates[change.reason.template])
+
+
+def list_names_of_reason(reason: Phrase) -> list[str]:
+    """Return the names that a reason gives as ``name`` or, each in quotation marks, as ``names``."""
+    arguments = reason.arguments
+    return [str(arguments["name"])] if "name" in arguments else _QUOTED_NAME.findall(str(arguments["names"]))
 
 
 def _list_other_names(change: Change) -> list[str]:
