@@ -247,6 +247,7 @@ class SourceNames:
         namespaces: the named namespaces that a C++ header opens, each with its first location.
         enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
         ignoring_keywords: the functions and classes of a Python source that take any keyword argument but use none.
+        passed_on: the methods of a Python source that it passes on, such as callbacks, qualified by their classes.
         hidden_classes: the names of the protected and private classes in a C++ source.
         wrapper_arguments: the expressions that name topics and services in classes of a Python source, for which the
             callers of the classes pass the names.
@@ -291,6 +292,7 @@ class SourceNames:
     namespaces: dict[str, Span] = field(default_factory=dict)
     enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
     ignoring_keywords: set[str] = field(default_factory=set)
+    passed_on: set[str] = field(default_factory=set)
     hidden_classes: set[str] = field(default_factory=set)
     wrapper_arguments: set[str] = field(default_factory=set)
     imported_objects: set[str] = field(default_factory=set)

@@ -273,11 +273,14 @@ class _Reader:
             return
         nodes = list(ast.walk(definition))
         called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
-        passed_on = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called_ids}
+        reads = (node for node in nodes if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load))
+        passed_on = {node.attr for node in reads if id(node) not in called_ids}
         self._names.inherited_names[definition.name] = inherited
         for method, signature in read_method_signatures(definition):
-            if method.name not in passed_on:
-                name, details = f"{definition.name}.{method.name}", _list_details(method, signature)
+            name, details = f"{definition.name}.{method.name}", _list_details(method, signature)
+            if method.name in passed_on:
+                self._names.passed_on.add(name)
+            else:
                 self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
                 if ignores_keywords(method):
                     self._names.ignoring_keywords.add(name)
