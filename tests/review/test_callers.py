@@ -163,7 +163,7 @@ METHODS += "    def on_end(self):\n        pass\n\n    def _own(self):\n        
         ("def run(self, goal)", "def runs(self, goal)",
          "function 'Plan.run' (goal) renamed to 'Plan.runs' (goal)", True),
         ("    def run(self, goal):\n        pass\n\n", "", "functions removed: 'Plan.run' (goal)", True),
-        ("    def on_end(self):\n        pass\n", "", "code removed: 'Plan.on_end()'", False),
+        ("    def on_end(self):\n        pass\n", "", "uses its attribute 'on_end', which is no longer defined", True),
         ("    def _own(self):\n        pass\n", "", "code removed: 'Plan._own()'", False),
         ("class Plan:", "class Plan(Base):", "code changed in 'Plan'", False),
     ],

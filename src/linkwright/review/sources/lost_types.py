@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
@@ -63,7 +64,7 @@ def _find_declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
 
 
 def _find_uses(
-    path: str, code: str, header: str, names: Sequence[str], scopes: Set[str], use_pattern: str
+    path: str, code: str, header: str, names: Sequence[str], scopes: AbstractSet[str], use_pattern: str
 ) -> Iterator[tuple[str, Change]]:
     """Yield a change for the first use of each name in a file.
 
