@@ -274,3 +274,36 @@ def test_functions_of_an_added_module_are_told(repository, compare):
     repository.write({"arm/arm/plans.py": text})
     lines = sentences(subject(compare(repository), "arm/arm/plans.py"))
     assert lines == ["classes added: 'Plan'", "functions added: 'walk' (now)"]
+
+
+LAUNCH_USER = (
+    "from arm import Robot\n\n\ndef generate_launch_description():\n    return [Robot.make_ip(), Robot.PORT]\n"
+)
+CLASS_METHODS = "class Robot:\n    PORT = 1\n\n    @staticmethod\n    def make_ip():\n        return 2\n"
+LOST_METHOD = "calls the method 'make_ip', which 'Robot' in 'arm/arm/robot.py' does not have"
+LOST_CONSTANT = "uses the attribute 'PORT', which 'Robot' in 'arm/arm/robot.py' does not have"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "init", "expected"),
+    [
+        ("def make_ip", "def find_ip", "from .robot import Robot\n", [LOST_METHOD]),
+        ("PORT = 1", "DOOR = 1", "from arm.robot import Robot\n", [LOST_CONSTANT]),
+        ("def make_ip", "def find_ip", "from other.robot import Robot\n", []),
+        ("class Robot:\n    PORT = 1", "class Robot(Base):\n    DOOR = 1", "from .robot import Robot\n", []),
+    ],
+)
+def test_a_launch_file_that_uses_what_a_class_lost_fails(repository, compare, old, new, init, expected):
+    files = {**OBJECT_FILES, "arm/arm/__init__.py": init, "arm/arm/robot.py": CLASS_METHODS}
+    repository.commit({**files, "arm/launch/arm.launch.py": LAUNCH_USER})
+    repository.write({"arm/arm/robot.py": CLASS_METHODS.replace(old, new)})
+    found = breaking(compare(repository))
+    assert [sentence for sentence in found if "does not have" in sentence] == expected
+
+
+def test_a_test_that_calls_a_removed_function_fails(repository, compare):
+    repository.commit(
+        {**FILES, "arm/test/test_plans.py": "from arm.plans import walk\n\n\ndef test_walk():\n    walk()\n"}
+    )
+    repository.write({"arm/arm/plans.py": MODULE.replace("def walk", "def run")})
+    assert "imports 'walk', which 'arm/arm/plans.py' no longer has" in breaking(compare(repository))
