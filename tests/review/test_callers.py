@@ -307,3 +307,19 @@ def test_a_test_that_calls_a_removed_function_fails(repository, compare):
     )
     repository.write({"arm/arm/plans.py": MODULE.replace("def walk", "def run")})
     assert "imports 'walk', which 'arm/arm/plans.py' no longer has" in breaking(compare(repository))
+
+
+@pytest.mark.parametrize(
+    ("base", "method", "is_breaking"),
+    [("Node", "halt", True), ("Node", "get_logger", False), ("other.Thing", "halt", False), ("Plain", "halt", True)],
+)
+def test_a_method_that_a_class_with_a_known_base_class_lacks_is_breaking(
+    repository, compare, base, method, is_breaking
+):
+    robot = f"from rclpy.node import Node\nimport other\n\n\nclass Plain:\n    pass\n\n\nclass Robot({base}):\n"
+    user = f"from arm.robot import Robot\n\nbot = Robot()\nbot.{method}()\n"
+    lost = f"    def {method}(self):\n        pass\n"
+    repository.commit({**OBJECT_FILES, "arm/arm/robot.py": f"{robot}    speed = 1\n\n{lost}", "arm/arm/main.py": user})
+    repository.write({"arm/arm/robot.py": f"{robot}    speed = 1\n"})
+    sentence = f"calls the method '{method}', which 'Robot' in 'arm/arm/robot.py' does not have"
+    assert (sentence in breaking(compare(repository))) is is_breaking

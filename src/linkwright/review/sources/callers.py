@@ -131,7 +131,7 @@ def _find_classes(files: _PythonFiles, path: str, name: str, level: int, depth: 
     tree = None if module_path is None else _parse(files.version, module_path)
     if module_path is None or tree is None:
         return {}
-    classes = read_classes(module_path, tree)
+    classes = read_classes(module_path, files.version.file(module_path), tree)
     imports = tree.body if PurePosixPath(module_path).name == PACKAGE_FILE and depth < _MAX_DEPTH else ()
     for node in imports:
         if isinstance(node, ast.ImportFrom):

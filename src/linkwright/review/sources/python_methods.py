@@ -40,21 +40,33 @@ def find_undefined_attributes(path: Path, tree: ast.Module) -> dict[str, tuple[a
         path: the path of the source.
         tree: the syntax tree of the source.
     """
-    if _is_dynamic(tree):
-        return {}
-    defined = set(find_defined_attributes(tree)) | set(_find_looked_up(tree))
+    looked_up = set(_find_looked_up(tree))
     first_uses: dict[str, tuple[ast.Attribute, str, bool]] = {}
     for definition in (node for node in tree.body if isinstance(node, ast.ClassDef)):
-        inherited = find_inherited_names(path, tree, definition)
-        uses = [] if inherited is None else [use for use in _find_own_uses(definition) if use[0].attr not in defined]
-        bases = [found[1] for found in _find_bases(path, tree, definition)] if uses else []
-        if inherited is None or any(map(_is_dynamic, bases)):
-            continue
-        inherited.update(name for base in bases for name in find_defined_attributes(base))
-        for node, is_call in uses:
-            if node.attr not in inherited:
+        known = find_known_attributes(path, tree, definition)
+        for node, is_call in _find_own_uses(definition) if known is not None else ():
+            if known is not None and node.attr not in known | looked_up:
                 first_uses.setdefault(node.attr, (node, definition.name, is_call))
     return first_uses
+
+
+def find_known_attributes(path: Path, tree: ast.Module, definition: ast.ClassDef) -> frozenset[str] | None:
+    """Return the attributes that objects of a class may have, or None if they are uncertain.
+
+    They are uncertain if a base class is of an unknown package, or if a source sets attributes by computed names.
+
+    Args:
+        path: the path of the source.
+        tree: the syntax tree of the source.
+        definition: the class.
+    """
+    inherited = None if _is_dynamic(tree) else find_inherited_names(path, tree, definition)
+    if inherited is None:
+        return None
+    bases = [found[1] for found in _find_bases(path, tree, definition)]
+    if any(map(_is_dynamic, bases)):
+        return None
+    return frozenset(inherited).union(*map(find_defined_attributes, [tree, *bases]))
 
 
 def is_defined_by_others(version: Version, path: str, use: OwnUse, name: str) -> bool:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.review.sources.python_methods import find_defined_attributes
-from linkwright.review.sources.signatures import is_self_contained
+from linkwright.review.sources.python_methods import find_known_attributes
 from linkwright.review.sources.undefined_names import find_bound_names
 
-_DYNAMIC_NAMES = frozenset({"setattr", "__dict__", "__setattr__", "__getattribute__", "vars"})
-"""The names with which a module can give objects further attributes."""
+_CLASS_NAMES = frozenset(dir(type))
+"""The names that all classes have."""
 
 
 class KnownClass(NamedTuple):
-    """A class that has only the attributes which its module defines.
+    """A class that has only attributes which the repository or a known package defines.
 
     Attributes:
         path: the path of the module.
@@ -46,16 +46,22 @@ class FailingUse(NamedTuple):
     node: ast.Attribute
 
 
-def read_classes(path: str, tree: ast.Module) -> dict[str, KnownClass]:
-    """Return the classes of a module without base classes and decorators, by name."""
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    defined = frozenset(find_defined_attributes(tree))
-    if not _DYNAMIC_NAMES.isdisjoint(names | defined):
-        return {}
-    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and is_self_contained(node)]
+def read_classes(path: str, file: Path, tree: ast.Module) -> dict[str, KnownClass]:
+    """Return the classes of a module whose attributes are certain, by name.
+
+    Args:
+        path: the path of the module relative to the root.
+        file: the file.
+        tree: its syntax tree.
+    """
     count = [node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))].count
-    return {node.name: KnownClass(path, node.name, defined) for node in classes if count(node.name) == 1}
+    classes = (node for node in tree.body if isinstance(node, ast.ClassDef) and count(node.name) == 1)
+    found = {node.name: find_known_attributes(file, tree, node) for node in classes}
+    return {
+        name: KnownClass(path, name, attributes | _CLASS_NAMES)
+        for name, attributes in found.items()
+        if attributes is not None
+    }
 
 
 def find_failing_uses(
@@ -88,7 +94,7 @@ def find_failing_uses(
     assigned_attributes = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
     for node in attributes:
         known = classes.get(objects.get(ast.unparse(node.value), ""))
-        is_known = known is None or node.attr.startswith("__") or node.attr in known.attributes | assigned_attributes
+        is_known = known is None or node.attr.startswith("_") or node.attr in known.attributes | assigned_attributes
         if known is not None and not is_known and id(node) not in guarded_ids:
             yield FailingUse(known.path, known.name, node.attr, id(node) in called_ids, node)
 
