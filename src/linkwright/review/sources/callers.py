@@ -208,7 +208,7 @@ class _PythonFiles:
         removed: the paths of modules that only the other version has.
 
     Attributes:
-        paths: the paths of all sources. Those in folders of tests are no modules that others import.
+        paths: the paths of all sources. Other files do not import those in folders of tests.
     """
 
     def __init__(self, version: Version, removed: Sequence[str]) -> None:
