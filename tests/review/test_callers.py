@@ -163,7 +163,7 @@ METHODS += "    def on_end(self):\n        pass\n\n    def _own(self):\n        
         ("def run(self, goal)", "def runs(self, goal)",
          "function 'Plan.run' (goal) renamed to 'Plan.runs' (goal)", True),
         ("    def run(self, goal):\n        pass\n\n", "", "functions removed: 'Plan.run' (goal)", True),
-        ("    def on_end(self):\n        pass\n", "", "code removed: 'Plan.on_end()'", False),
+        ("    def on_end(self):\n        pass\n", "", "uses its attribute 'on_end', which is no longer defined", True),
         ("    def _own(self):\n        pass\n", "", "code removed: 'Plan._own()'", False),
         ("class Plan:", "class Plan(Base):", "code changed in 'Plan'", False),
     ],
@@ -274,3 +274,52 @@ def test_functions_of_an_added_module_are_told(repository, compare):
     repository.write({"arm/arm/plans.py": text})
     lines = sentences(subject(compare(repository), "arm/arm/plans.py"))
     assert lines == ["classes added: 'Plan'", "functions added: 'walk' (now)"]
+
+
+LAUNCH_USER = (
+    "from arm import Robot\n\n\ndef generate_launch_description():\n    return [Robot.make_ip(), Robot.PORT]\n"
+)
+CLASS_METHODS = "class Robot:\n    PORT = 1\n\n    @staticmethod\n    def make_ip():\n        return 2\n"
+LOST_METHOD = "calls the method 'make_ip', which 'Robot' in 'arm/arm/robot.py' does not have"
+LOST_CONSTANT = "uses the attribute 'PORT', which 'Robot' in 'arm/arm/robot.py' does not have"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "init", "expected"),
+    [
+        ("def make_ip", "def find_ip", "from .robot import Robot\n", [LOST_METHOD]),
+        ("PORT = 1", "DOOR = 1", "from arm.robot import Robot\n", [LOST_CONSTANT]),
+        ("def make_ip", "def find_ip", "from other.robot import Robot\n", []),
+        ("class Robot:\n    PORT = 1", "class Robot(Base):\n    DOOR = 1", "from .robot import Robot\n", []),
+    ],
+)
+def test_a_launch_file_that_uses_what_a_class_lost_fails(repository, compare, old, new, init, expected):
+    files = {**OBJECT_FILES, "arm/arm/__init__.py": init, "arm/arm/robot.py": CLASS_METHODS}
+    repository.commit({**files, "arm/launch/arm.launch.py": LAUNCH_USER})
+    repository.write({"arm/arm/robot.py": CLASS_METHODS.replace(old, new)})
+    found = breaking(compare(repository))
+    assert [sentence for sentence in found if "does not have" in sentence] == expected
+
+
+def test_a_test_that_calls_a_removed_function_fails(repository, compare):
+    repository.commit(
+        {**FILES, "arm/test/test_plans.py": "from arm.plans import walk\n\n\ndef test_walk():\n    walk()\n"}
+    )
+    repository.write({"arm/arm/plans.py": MODULE.replace("def walk", "def run")})
+    assert "imports 'walk', which 'arm/arm/plans.py' no longer has" in breaking(compare(repository))
+
+
+@pytest.mark.parametrize(
+    ("base", "method", "is_breaking"),
+    [("Node", "halt", True), ("Node", "get_logger", False), ("other.Thing", "halt", False), ("Plain", "halt", True)],
+)
+def test_a_method_that_a_class_with_a_known_base_class_lacks_is_breaking(
+    repository, compare, base, method, is_breaking
+):
+    robot = f"from rclpy.node import Node\nimport other\n\n\nclass Plain:\n    pass\n\n\nclass Robot({base}):\n"
+    user = f"from arm.robot import Robot\n\nbot = Robot()\nbot.{method}()\n"
+    lost = f"    def {method}(self):\n        pass\n"
+    repository.commit({**OBJECT_FILES, "arm/arm/robot.py": f"{robot}    speed = 1\n\n{lost}", "arm/arm/main.py": user})
+    repository.write({"arm/arm/robot.py": f"{robot}    speed = 1\n"})
+    sentence = f"calls the method '{method}', which 'Robot' in 'arm/arm/robot.py' does not have"
+    assert (sentence in breaking(compare(repository))) is is_breaking

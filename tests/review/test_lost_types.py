@@ -93,3 +93,14 @@ def test_an_enumeration_that_moves_to_a_base_class_is_not_lost(repository, compa
         }
     )
     assert breaking(compare(repository)) == []
+
+
+def test_a_name_in_another_namespace_is_not_that_of_the_header(repository, compare):
+    header = "#pragma once\nnamespace m::control {\nenum class Mode { manual, automatic };\n}\n"
+    use = "#include <m/mode.hpp>\nbool f(%sMode mode) { return mode == %sMode::manual; }\n"
+    files = {"lib/include/m/mode.hpp": header, "lib/src/main.cpp": use % (("m::control::",) * 2)}
+    repository.commit({**files, "lib/src/other.cpp": files["lib/src/main.cpp"]})
+    header = header.replace("enum class Mode { manual, automatic };\n", "")
+    repository.write({"lib/include/m/mode.hpp": header, "lib/src/main.cpp": use % (("m::types::",) * 2)})
+    used = [item.path for item in compare(repository).subjects if "uses 'Mode'" in str(item.changes[0].sentence)]
+    assert used == ["lib/src/other.cpp"]

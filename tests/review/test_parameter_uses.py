@@ -61,3 +61,20 @@ def test_a_parameter_of_a_cpp_node_is_renamed_only_with_the_same_use(repository,
     repository.commit({**MANIFEST, "arm/a.cpp": old})
     repository.write({"arm/a.cpp": new})
     assert breaking(compare(repository)) == [text.replace("'base'", '"base"') for text in expected]
+
+
+@pytest.mark.parametrize(
+    ("helper", "expected"),
+    [
+        ("from launch_ros.actions import Node\nvalue = {'speed': 2}\n", ["parameters removed: 'speed' (1)"]),
+        ("import rclpy\nfrom launch.actions import LogInfo\nrate = read('speed')\n", []),
+        ("rate = read('speed')\n", []),
+    ],
+)
+def test_a_helper_module_of_launch_files_does_not_read_a_parameter(repository, compare, helper, expected):
+    node = (
+        'void Arm::start() {\n  declare_parameter("speed", 1);\n  get_parameter("speed", speed_);\n  run(speed_);\n}\n'
+    )
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": node, "arm/arm/actions.py": helper})
+    repository.write({"arm/src/arm.cpp": "void Arm::start() {\n  run(speed_);\n}\n"})
+    assert breaking(compare(repository)) == expected

@@ -178,3 +178,11 @@ def test_the_stated_type_of_a_lost_result_is_shown_for_functions_and_methods(rep
         "function 'Arm.stop': returned value int -> None",
     ]
     assert {str(change.reason) for _, change in result.breaking_changes} == {"programs that use the result get None"}
+
+
+@pytest.mark.parametrize("added", ["goal.stop = True", "goal.stopped.connect(self.stop)"])
+def test_a_method_is_not_removed_because_its_class_uses_the_name_in_another_way(repository, compare, added):
+    text = f"class Arm:\n    def start(self, goal):\n        return 1\n{METHOD.format('stop')}"
+    repository.commit({**PYTHON, "arm/arm/a.py": text})
+    repository.write({"arm/arm/a.py": text.replace("return 1", f"{added}\n        return 1")})
+    assert breaking(compare(repository)) == []

@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, SourceText, phrase
@@ -15,7 +15,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, find_failing_calls, read_classes
+from linkwright.review.sources.python_objects import FailingUse, KnownClass, find_failing_uses, read_classes
 from linkwright.review.sources.reading import is_generated, try_read_source
 from linkwright.review.sources.signatures import Signature, count_returned, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names
@@ -23,6 +23,9 @@ from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _PATH_EXTENSION = re.compile(r"^\s*sys\.path\.(?:append|insert|extend)\(", re.MULTILINE)
 """A statement with which a file can import modules of other folders by their names."""
+_CLASS = re.compile(r"^class\s+(?P<name>\w+)", re.MULTILINE)
+_MAX_DEPTH = 3
+"""The maximum number of ``__init__.py`` files that lead to a class."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +69,10 @@ class _LostNames:
 def find_broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that import a removed name, or call a function with unsuitable arguments.
 
-    Only modules of the repository that match exactly one file are searched. Methods are checked if the
+    Only modules of the repository that match exactly one file are searched. Methods and attributes are checked if the
     class of their object is certain.
     """
-    yield from _find_failing_methods(versions, changed_files)
+    yield from _find_failing_uses(versions, changed_files)
     lost = [module for file in changed_files if (module := _find_lost(versions, file)) is not None]
     if not lost:
         return
@@ -87,40 +90,56 @@ def find_broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]
                 yield from ((path, change) for change in _Caller(files, path, tree, module).find_changes())
 
 
-def _find_failing_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files that newly call a method that the class of the object lacks."""
+def _find_failing_uses(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files that newly use an attribute or method that the class or the class of the object lacks."""
     changed = [file.new_path for file in changed_files if file.new_path and file.new_path.endswith(PYTHON_SUFFIX)]
     if not changed:
         return
     files = {version: _PythonFiles(version, ()) for version in (versions.old, versions.new)}
     old_paths = {file.new_path: file.old_path for file in changed_files}
+    classes = {match["name"] for path in changed for match in _CLASS.finditer(versions.new.text(path))}
     for path in files[versions.new].paths:
         text = versions.new.text(path)
-        if path not in changed and not any(_get_module_word(module) in text for module in changed):
+        if path not in changed and not any(name in text for name in classes):
             continue
-        new = list(_find_failing_calls(files[versions.new], path))
+        new = list(_list_failing_uses(files[versions.new], path))
         old_path = old_paths.get(path, path)
-        old = {call[:3] for call in _find_failing_calls(files[versions.old], old_path)} if new and old_path else set()
-        for call in {call.method: call for call in reversed(new) if call[:3] not in old}.values():
-            message = phrase(
-                "calls the method '{name}', which '{class_name}' in '{file}' does not have",
-                name=call.method,
-                class_name=call.class_name,
-                file=call.path,
-            )
-            location = Location(path, call.node.lineno, call.node.col_offset + 1)
-            yield path, Change(message, Effect.BREAKING, phrase("the call fails"), location)
+        old = {use[:3] for use in _list_failing_uses(files[versions.old], old_path)} if new and old_path else set()
+        first_uses = {use.attribute: use for use in reversed(new) if use[:3] not in old}
+        for use in sorted(first_uses.values(), key=lambda use: use.node.lineno):
+            yield path, _make_use_change(path, use)
 
 
-def _find_failing_calls(files: _PythonFiles, path: str) -> Iterator[FailingCall]:
+def _make_use_change(path: str, use: FailingUse) -> Change:
+    names = {"name": use.attribute, "class_name": use.class_name, "file": use.path}
+    location = Location(path, use.node.lineno, use.node.col_offset + 1)
+    if use.is_call:
+        message = phrase("calls the method '{name}', which '{class_name}' in '{file}' does not have", **names)
+        return Change(message, Effect.BREAKING, phrase("the call fails"), location)
+    message = phrase("uses the attribute '{name}', which '{class_name}' in '{file}' does not have", **names)
+    return Change(message, Effect.BREAKING, phrase("the access fails"), location)
+
+
+def _list_failing_uses(files: _PythonFiles, path: str) -> Iterator[FailingUse]:
     tree = _parse(files.version, path)
+    return iter(()) if tree is None else find_failing_uses(tree, partial(_find_classes, files, path))
 
-    def find_module(name: str, level: int) -> ModuleClasses | None:
-        module_path = files.find_module(path, name, level)
-        module_tree = None if module_path is None else _parse(files.version, module_path)
-        return None if module_path is None or module_tree is None else read_classes(module_path, module_tree)
 
-    return iter(()) if tree is None else find_failing_calls(tree, find_module)
+def _find_classes(files: _PythonFiles, path: str, name: str, level: int, depth: int = 0) -> dict[str, KnownClass]:
+    """Return the known classes of a module that a file imports, with those that an ``__init__.py`` imports from it."""
+    module_path = files.find_module(path, name, level)
+    tree = None if module_path is None else _parse(files.version, module_path)
+    if module_path is None or tree is None:
+        return {}
+    classes = read_classes(module_path, files.version.file(module_path), tree)
+    imports = tree.body if PurePosixPath(module_path).name == PACKAGE_FILE and depth < _MAX_DEPTH else ()
+    for node in imports:
+        if isinstance(node, ast.ImportFrom):
+            found = _find_classes(files, module_path, node.module or "", node.level, depth + 1)
+            classes.update(
+                {alias.asname or alias.name: found[alias.name] for alias in node.names if alias.name in found}
+            )
+    return classes
 
 
 def _find_lost(versions: Versions, file: ChangedFile) -> _LostNames | None:
@@ -182,22 +201,25 @@ def _read_module(version: Version, path: str) -> _Module | None:
 
 
 class _PythonFiles:
-    """The Python sources of a version, except tests.
+    """The Python sources of a version.
 
     Args:
         version: the version of the repository.
         removed: the paths of modules that only the other version has.
+
+    Attributes:
+        paths: the paths of all sources. Other files do not import those in folders of tests.
     """
 
     def __init__(self, version: Version, removed: Sequence[str]) -> None:
-        paths = version.paths((PYTHON_SUFFIX,))
-        self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
+        self.paths = list(version.paths((PYTHON_SUFFIX,)))
+        self._modules = [path for path in self.paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
         self._removed_paths = removed
         self.version = version
 
     @cached_property
     def _all_paths(self) -> frozenset[str]:
-        return frozenset((*self.paths, *self._removed_paths))
+        return frozenset((*self._modules, *self._removed_paths))
 
     def find_module(self, path: str, name: str, level: int) -> str | None:
         """Return the path of the module that a file imports.
@@ -218,15 +240,29 @@ class _PythonFiles:
             return self._get_only_path(file for file in files if file in self._all_paths)
         sibling = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
         if "/" not in part:
-            if sibling in self.paths:
+            if sibling in self._modules:
                 return sibling
+            package = self._find_python_package(part)
+            if package is not None:
+                return package
             if not _PATH_EXTENSION.search(self.version.text(path)):
                 return None  # a module that does not exist here may belong to a different package
             return self._get_only_path(
-                file for file in self.paths if PurePosixPath(file).name == f"{part}{PYTHON_SUFFIX}"
+                file for file in self._modules if PurePosixPath(file).name == f"{part}{PYTHON_SUFFIX}"
             )
         ends = (f"/{part}{PYTHON_SUFFIX}", f"/{part}/{PACKAGE_FILE}")
         return self._get_only_path(file for file in self._all_paths if f"/{file}".endswith(ends))
+
+    def _find_python_package(self, name: str) -> str | None:
+        """Return the ``__init__.py`` of a Python package that the ROS package of the same name contains, or None."""
+        end = f"{name}/{name}/{PACKAGE_FILE}"
+        files = (file for file in self._modules if name and f"/{file}".endswith(f"/{end}"))
+        path = self._get_only_path(files)
+        return (
+            path
+            if path is not None and self.version.package_of(path) == path.removesuffix(f"/{name}/{PACKAGE_FILE}")
+            else None
+        )
 
     @staticmethod
     def _get_only_path(paths: Iterable[str]) -> str | None:

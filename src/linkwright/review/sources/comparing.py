@@ -185,8 +185,8 @@ class _SourcePair(PairedNames):
             or has_only_in_other_nodes(item, self.old, self.new, (old_path, path))
             or is_new_in_plugin(item, self.old, self.new, (old_path, path))
         ]
-        removed = [item for item in removed if not new_names.has_default(item)]
-        added = [item for item in added if not old_names.has_default(item)]
+        removed = [i for i in removed if i.name not in new_names.passed_on and not new_names.has_default(i)]
+        added = [i for i in added if i.name not in old_names.passed_on and not old_names.has_default(i)]
         removed, added = self.select_reported(kind, removed, added, old_names, new_names)
         # a different source of the package still has these names, or already had them
         remaining_old = [

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
@@ -15,7 +16,7 @@ from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import Versions
 
 _COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
-_SCOPE = re.compile(r"\b(?:namespace|enum\s+(?:class|struct)|class|struct|enum)\s+(?P<name>\w+)")
+_SCOPE = re.compile(r"\b(?:namespace|enum\s+(?:class|struct)|class|struct|enum)\s+(?P<names>\w+(?:::\w+)*)")
 _USED_NAMESPACE = re.compile(r"\busing\s+namespace\s+(?:\w+::)*(?P<name>\w+)")
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
 _TYPE_USE = r"(?=\s*(?:[&*]\s*|\s)\w|\s*::|\s*[>&*])"
@@ -36,7 +37,8 @@ def find_lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     codes = {path: blank_comments(text) for path, text in texts.items()}
     for header, (names, enumerators) in lost.items():
         declared = _find_declared([*names, *enumerators], codes.values())
-        scopes = {match["name"] for match in _SCOPE.finditer(versions.old.text(_find_old_path(changed_files, header)))}
+        old_text = versions.old.text(_find_old_path(changed_files, header))
+        scopes = {name for match in _SCOPE.finditer(old_text) for name in match["names"].split("::")}
         for path in find_including_files(texts, header):
             if {match["name"] for match in _USED_NAMESPACE.finditer(codes[path])} <= scopes | {"std"}:
                 for own, pattern in ((names, _TYPE_USE), (enumerators, _ENUMERATOR_USE)):
@@ -62,15 +64,16 @@ def _find_declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
 
 
 def _find_uses(
-    path: str, code: str, header: str, names: Sequence[str], scopes: Collection[str], use_pattern: str
+    path: str, code: str, header: str, names: Sequence[str], scopes: AbstractSet[str], use_pattern: str
 ) -> Iterator[tuple[str, Change]]:
     """Yield a change for the first use of each name in a file.
 
-    The name may have a scope of the header.
+    The name may have scopes of the header.
     """
     for name in names:
-        pattern = re.compile(rf"(?<![\w.>:])(?:(?P<scope>\w+)::)*{name}\b{use_pattern}")
-        use = next((match for match in pattern.finditer(code) if match["scope"] in (None, *scopes)), None)
+        pattern = re.compile(rf"(?<![\w.>:])(?P<scopes>(?:\w+::)*){name}\b{use_pattern}")
+        matches = (match for match in pattern.finditer(code) if scopes.issuperset(match["scopes"].split("::")[:-1]))
+        use = next(matches, None)
         if use is not None:
             yield path, _make_change(path, header, name, code[: use.start()].count("\n") + 1)
 

@@ -178,6 +178,20 @@ class ConditionalLines(NamedTuple):
     line: int
 
 
+class OwnUse(NamedTuple):
+    """A use of an attribute or method by a class of a Python source that does not have it.
+
+    Attributes:
+        class_name: the name of the class.
+        span: the location of the attribute.
+        is_call: whether the class calls it.
+    """
+
+    class_name: str
+    span: Span
+    is_call: bool
+
+
 class TimerClock(Enum):
     """The clock by which a timer runs, with its name for reports."""
 
@@ -239,14 +253,15 @@ class SourceNames:
         bound_names: the names that a Python 3 source defines or imports.
         undefined_names: the undefined names that a source uses, each with the location of its first use.
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
-        undefined_methods: the undefined methods that classes of a source call on themselves, each with
-            the location of its first call.
+        undefined_attributes: the first uses of the undefined attributes and methods that classes of a source use of
+            themselves, by name.
         non_public: the private and protected members of the classes of a C++ header, with the names of the classes.
         protected: the protected members, functions and nested classes of the classes of a C++ header.
         aliases: the types that a C++ header names with ``typedef`` and ``using``, by name.
         namespaces: the named namespaces that a C++ header opens, each with its first location.
         enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
         ignoring_keywords: the functions and classes of a Python source that take any keyword argument but use none.
+        passed_on: the methods of a Python source that it passes on, such as callbacks, qualified by their classes.
         hidden_classes: the names of the protected and private classes in a C++ source.
         wrapper_arguments: the expressions that name topics and services in classes of a Python source, for which the
             callers of the classes pass the names.
@@ -284,13 +299,14 @@ class SourceNames:
     bound_names: frozenset[str] = frozenset()
     undefined_names: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()
-    undefined_methods: dict[str, Span] = field(default_factory=dict)
+    undefined_attributes: dict[str, OwnUse] = field(default_factory=dict)
     non_public: frozenset[str] = frozenset()
     protected: list[SourceName] = field(default_factory=list)
     aliases: dict[str, str] = field(default_factory=dict)
     namespaces: dict[str, Span] = field(default_factory=dict)
     enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
     ignoring_keywords: set[str] = field(default_factory=set)
+    passed_on: set[str] = field(default_factory=set)
     hidden_classes: set[str] = field(default_factory=set)
     wrapper_arguments: set[str] = field(default_factory=set)
     imported_objects: set[str] = field(default_factory=set)

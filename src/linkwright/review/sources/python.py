@@ -18,14 +18,14 @@ from linkwright.review.sources.declared_types import find_declared_type
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.frame_helpers import find_frame_arguments
 from linkwright.review.sources.interface_types import PythonTypes
-from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import NO, YES, Detail, NameKind, OwnUse, SourceName, SourceNames, Timer
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python_attributes import find_attributes
 from linkwright.review.sources.python_bases import find_inherited_names, list_known_names
 from linkwright.review.sources.python_callbacks import CallbackFunctions
-from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
+from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_attributes
 from linkwright.review.sources.python_parameter_ranges import PythonRanges
 from linkwright.review.sources.python_source import PythonSource
 from linkwright.review.sources.python_wrappers import CREATING_METHODS, WrapperClasses, get_argument
@@ -94,8 +94,8 @@ def read_python(source: SourceText, names: SourceNames) -> None:
             (name, python.span(node)) for name, node in find_undefined_names(python.tree).items()
         )
         names.attributes = frozenset(find_defined_attributes(python.tree))
-        methods = find_undefined_methods(python.tree).items()
-        names.undefined_methods.update((name, python.span(node)) for name, node in methods)
+        for name, (node, owner, is_call) in find_undefined_attributes(Path(source.name), python.tree).items():
+            names.undefined_attributes[name] = OwnUse(owner, python.span(node), is_call)
     if PurePosixPath(source.name).name == PACKAGE_FILE:
         read_imports(python, names)
 
@@ -273,11 +273,14 @@ class _Reader:
             return
         nodes = list(ast.walk(definition))
         called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
-        passed_on = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called_ids}
+        reads = (node for node in nodes if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load))
+        passed_on = {node.attr for node in reads if id(node) not in called_ids}
         self._names.inherited_names[definition.name] = inherited
         for method, signature in read_method_signatures(definition):
-            if method.name not in passed_on:
-                name, details = f"{definition.name}.{method.name}", _list_details(method, signature)
+            name, details = f"{definition.name}.{method.name}", _list_details(method, signature)
+            if method.name in passed_on:
+                self._names.passed_on.add(name)
+            else:
                 self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
                 if ignores_keywords(method):
                     self._names.ignoring_keywords.add(name)

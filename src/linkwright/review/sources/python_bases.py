@@ -13,7 +13,15 @@ from linkwright.review.sources.shared_constants import find_own_module, read_mod
 NODE_NAMES = frozenset(
     {
         *("add_on_set_parameters_callback", "add_post_set_parameters_callback", "add_pre_set_parameters_callback"),
-        *("add_waitable", "assert_liveliness", "clients", "context", "count_clients", "count_publishers"),
+        *(
+            "PARAM_REL_TOL",
+            "add_waitable",
+            "assert_liveliness",
+            "clients",
+            "context",
+            "count_clients",
+            "count_publishers",
+        ),
         *("count_services", "count_subscribers", "create_client", "create_guard_condition", "create_publisher"),
         *("create_rate", "create_service", "create_subscription", "create_timer", "declare_parameter"),
         *("declare_parameters", "default_callback_group", "describe_parameter", "describe_parameters"),
@@ -37,6 +45,7 @@ NODE_NAMES = frozenset(
         *("graph", "guards", "handle", "has_parameter", "list_parameters", "publishers"),
         *("remove_on_set_parameters_callback", "remove_post_set_parameters_callback"),
         *("remove_pre_set_parameters_callback", "remove_waitable", "resolve_service_name", "resolve_topic_name"),
+        "PARAM_REL_TOL",
         *("services", "set_descriptor", "set_parameters", "set_parameters_atomically", "set_parameters_callback"),
         *("subscriptions", "timers", "undeclare_parameter", "wait_for_node", "waitables"),
     }

@@ -1,12 +1,20 @@
-"""Find undefined methods that Python classes call on themselves."""
+"""Find undefined attributes and methods that Python classes use of themselves."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator
+from pathlib import Path
 
-_DYNAMIC_NAMES = ("setattr", "__dict__", "__getattr__", "__getattribute__", "__setattr__")
+from linkwright.review.sources.names import PYTHON_SUFFIX, OwnUse
+from linkwright.review.sources.python_bases import find_class, find_inherited_names
+from linkwright.review.versions import Version
+
+_DYNAMIC_NAMES = frozenset({"setattr", "__dict__", "__getattr__", "__getattribute__", "__setattr__", "vars"})
 """The names with which a class can get further attributes."""
+_LOOKUPS = ("hasattr", "getattr")
+_MAX_DEPTH = 8
 
 
 def find_defined_attributes(tree: ast.AST) -> Iterator[str]:
@@ -22,43 +30,102 @@ def find_defined_attributes(tree: ast.AST) -> Iterator[str]:
             yield node.attr
 
 
-def find_undefined_methods(tree: ast.Module) -> dict[str, ast.Attribute]:
-    """Return the first call of each undefined method that a class calls on itself.
+def find_undefined_attributes(path: Path, tree: ast.Module) -> dict[str, tuple[ast.Attribute, str, bool]]:
+    """Return the first use of each undefined attribute or method that a class uses of itself.
 
-    Classes with base classes of other files, which may define the method, are left out.
+    Each has the name of the class, and whether it is a call. Classes with base classes of unknown packages, which may
+    define the attribute, are left out, as are uses inside ``try`` and names that a source looks up with ``hasattr``.
+
+    Args:
+        path: the path of the source.
+        tree: the syntax tree of the source.
     """
+    looked_up = set(_find_looked_up(tree))
+    first_uses: dict[str, tuple[ast.Attribute, str, bool]] = {}
+    for definition in (node for node in tree.body if isinstance(node, ast.ClassDef)):
+        known = find_known_attributes(path, tree, definition)
+        for node, is_call in _find_own_uses(definition) if known is not None else ():
+            if known is not None and node.attr not in known | looked_up:
+                first_uses.setdefault(node.attr, (node, definition.name, is_call))
+    return first_uses
+
+
+def find_known_attributes(path: Path, tree: ast.Module, definition: ast.ClassDef) -> frozenset[str] | None:
+    """Return the attributes that objects of a class may have, or None if they are uncertain.
+
+    They are uncertain if a base class is of an unknown package, or if a source sets attributes by computed names.
+
+    Args:
+        path: the path of the source.
+        tree: the syntax tree of the source.
+        definition: the class.
+    """
+    inherited = None if _is_dynamic(tree) else find_inherited_names(path, tree, definition)
+    if inherited is None:
+        return None
+    bases = [found[1] for found in _find_bases(path, tree, definition)]
+    if any(map(_is_dynamic, bases)):
+        return None
+    return frozenset(inherited).union(*map(find_defined_attributes, [tree, *bases]))
+
+
+def is_defined_by_others(version: Version, path: str, use: OwnUse, name: str) -> bool:
+    """Return whether another source that names a class may define one of its attributes, such as a derived class.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the source with the class.
+        use: the use of the attribute.
+        name: the name of the attribute.
+    """
+    definition = re.compile(
+        rf"\bdef {name}\b|^\s+{name}\s*[:=]|\.{name}\s*(?::[^=\n]+)?=[^=]|['\"]{name}['\"]", re.MULTILINE
+    )
+    texts = (version.text(other) for other in version.paths((PYTHON_SUFFIX,)) if other != path)
+    return any(use.class_name in text and definition.search(text) is not None for text in texts)
+
+
+def _is_dynamic(tree: ast.Module) -> bool:
+    """Return whether a source can give objects attributes that it does not name."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    defined = set(find_defined_attributes(tree))
-    if not {*names, *attributes, *defined}.isdisjoint(_DYNAMIC_NAMES):
-        return {}
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    first_calls: dict[str, ast.Attribute] = {}
-    for definition in classes.values():
-        if _is_complete(definition, classes):
-            for call in _find_own_calls(definition):
-                if call.attr not in defined and not call.attr.startswith("__"):
-                    first_calls.setdefault(call.attr, call)
-    return first_calls
+    names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    return not _DYNAMIC_NAMES.isdisjoint(names | set(find_defined_attributes(tree)))
 
 
-def _is_complete(definition: ast.ClassDef, classes: Mapping[str, ast.ClassDef], depth: int = 0) -> bool:
-    """Return whether the source defines a class and all of its base classes."""
-    if definition.decorator_list or definition.keywords or depth > len(classes):
-        return False
-    names = [ast.unparse(base) for base in definition.bases if ast.unparse(base) != "object"]
-    return all(name in classes and _is_complete(classes[name], classes, depth + 1) for name in names)
+def _find_looked_up(tree: ast.Module) -> Iterator[str]:
+    """Yield the names of attributes that a source looks up by text, because an object may lack them."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _LOOKUPS:
+            yield from (arg.value for arg in node.args if isinstance(arg, ast.Constant) and isinstance(arg.value, str))
 
 
-def _find_own_calls(definition: ast.ClassDef) -> Iterator[ast.Attribute]:
-    """Yield the attributes of ``self`` that methods of a class call outside of ``try``."""
+def _find_bases(
+    path: Path, tree: ast.Module, definition: ast.ClassDef, depth: int = 0
+) -> Iterator[tuple[Path, ast.Module, ast.ClassDef]]:
+    """Yield the base classes that the package defines, each with its source."""
+    for base in definition.bases if depth < _MAX_DEPTH else ():
+        name = base.value if isinstance(base, ast.Subscript) else base  # ``Generic[T]``
+        found = find_class(path, tree, ast.unparse(name))
+        if found is not None:
+            yield found
+            yield from _find_bases(*found, depth + 1)
+
+
+def _find_own_uses(definition: ast.ClassDef) -> Iterator[tuple[ast.Attribute, bool]]:
+    """Yield the attributes of ``self`` that methods of a class read outside of ``try``, and whether they call them."""
     for method in definition.body:
         if not isinstance(method, (ast.FunctionDef, ast.AsyncFunctionDef)) or not method.args.args:
             continue
+        if any(ast.unparse(decorator) == "staticmethod" for decorator in method.decorator_list):
+            continue
         first = method.args.args[0].arg
-        guarded_ids = {id(inner) for node in ast.walk(method) if isinstance(node, ast.Try)
-                   for part in node.body for inner in ast.walk(part)}  # fmt: skip
-        calls = (node.func for node in ast.walk(method) if isinstance(node, ast.Call) and id(node) not in guarded_ids)
-        for call in calls:
-            if isinstance(call, ast.Attribute) and isinstance(call.value, ast.Name) and call.value.id == first:
-                yield call
+        nodes = list(ast.walk(method))
+        skipped = [part for node in nodes if isinstance(node, ast.Try) for part in node.body]
+        skipped += [node for node in nodes if isinstance(node, ast.ClassDef)]
+        skipped_ids = {id(inner) for part in skipped for inner in ast.walk(part)}
+        called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+        reads = (node for node in nodes if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load))
+        for node in reads:
+            is_own = isinstance(node.value, ast.Name) and node.value.id == first
+            if is_own and id(node) not in skipped_ids and not node.attr.startswith("__"):
+                yield node, id(node) in called_ids

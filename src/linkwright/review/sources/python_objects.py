@@ -1,94 +1,102 @@
-"""Find Python calls of methods that an imported class does not have."""
+"""Find Python uses of attributes and methods that an imported class does not have."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.review.sources.python_methods import find_defined_attributes
-from linkwright.review.sources.signatures import is_self_contained
+from linkwright.review.sources.python_methods import find_known_attributes
 from linkwright.review.sources.undefined_names import find_bound_names
 
-_DYNAMIC_NAMES = frozenset({"setattr", "__dict__", "__setattr__", "__getattribute__", "vars"})
-"""The names with which a module can give objects further attributes."""
+_CLASS_NAMES = frozenset(dir(type))
+"""The names that all classes have."""
 
 
-class ModuleClasses(NamedTuple):
-    """The classes of a module that have only the methods which it defines.
+class KnownClass(NamedTuple):
+    """A class that has only attributes which the repository or a known package defines.
 
     Attributes:
         path: the path of the module.
-        attributes: the names that objects of a class may have, by class.
+        name: the name of the class in the module.
+        attributes: the names that objects of the class may have.
     """
 
     path: str
-    attributes: Mapping[str, frozenset[str]]
+    name: str
+    attributes: frozenset[str]
 
 
-class FailingCall(NamedTuple):
-    """A call of a method that an object does not have.
+class FailingUse(NamedTuple):
+    """A use of an attribute that a class or object does not have.
 
     Attributes:
         path: the path of the module that defines the class.
-        class_name: the name of the object's class.
-        method: the name of the missing method.
-        node: the method in the call.
+        class_name: the name of the class.
+        attribute: the name of the missing attribute.
+        is_call: whether it is called.
+        node: the attribute in the source.
     """
 
     path: str
     class_name: str
-    method: str
+    attribute: str
+    is_call: bool
     node: ast.Attribute
 
 
-def read_classes(path: str, tree: ast.Module) -> ModuleClasses:
-    """Return the classes of a module without base classes and decorators."""
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    defined = frozenset(find_defined_attributes(tree))
-    if not _DYNAMIC_NAMES.isdisjoint(names | defined):
-        return ModuleClasses(path, {})
-    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and is_self_contained(node)]
-    count = [node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))].count
-    return ModuleClasses(path, {node.name: defined for node in classes if count(node.name) == 1})
-
-
-def find_failing_calls(
-    tree: ast.Module, find_module: Callable[[str, int], ModuleClasses | None]
-) -> Iterator[FailingCall]:
-    """Yield the calls of methods that the objects of imported classes lack.
-
-    Calls inside ``try`` are left out.
+def read_classes(path: str, file: Path, tree: ast.Module) -> dict[str, KnownClass]:
+    """Return the classes of a module whose attributes are certain, by name.
 
     Args:
-        tree: the file with the calls.
-        find_module: the function that returns a module from its name and the number of dots before it.
+        path: the path of the module relative to the root.
+        file: the file.
+        tree: its syntax tree.
+    """
+    count = [node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))].count
+    classes = (node for node in tree.body if isinstance(node, ast.ClassDef) and count(node.name) == 1)
+    found = {node.name: find_known_attributes(file, tree, node) for node in classes}
+    return {
+        name: KnownClass(path, name, attributes | _CLASS_NAMES)
+        for name, attributes in found.items()
+        if attributes is not None
+    }
+
+
+def find_failing_uses(
+    tree: ast.Module, find_classes: Callable[[str, int], Mapping[str, KnownClass]]
+) -> Iterator[FailingUse]:
+    """Yield the uses of attributes that imported classes and their objects lack.
+
+    Uses inside ``try`` are left out.
+
+    Args:
+        tree: the file with the uses.
+        find_classes: the function that returns the classes of a module from its name and the number of dots before it.
     """
     bound_names = list(find_bound_names(tree))
-    classes: dict[str, tuple[str, str, frozenset[str]]] = {}
+    classes: dict[str, KnownClass] = {}
     for statement in tree.body:
-        module_classes = (
-            find_module(statement.module or "", statement.level) if isinstance(statement, ast.ImportFrom) else None
-        )
-        if module_classes is not None and isinstance(statement, ast.ImportFrom):
-            classes.update(
-                (alias.asname or alias.name, (module_classes.path, alias.name, module_classes.attributes[alias.name]))
-                for alias in statement.names
-                if alias.name in module_classes.attributes and bound_names.count(alias.asname or alias.name) == 1
-            )
-    objects = _find_objects(tree, classes.keys()) if classes else {}
-    guarded_ids = {id(inner) for node in ast.walk(tree) if isinstance(node, ast.Try)
+        if isinstance(statement, ast.ImportFrom):
+            found = find_classes(statement.module or "", statement.level)
+            locals_by_name = {alias.asname or alias.name: alias.name for alias in statement.names}
+            classes.update({local: found[name] for local, name in locals_by_name.items() if name in found})
+    classes = {local: known for local, known in classes.items() if bound_names.count(local) == 1}
+    if not classes:
+        return
+    objects = {**{local: local for local in classes}, **_find_objects(tree, classes.keys())}
+    nodes = list(ast.walk(tree))
+    guarded_ids = {id(inner) for node in nodes if isinstance(node, ast.Try)
                for part in node.body for inner in ast.walk(part)}  # fmt: skip
-    assigned_attributes = {node.attr for node in ast.walk(tree)
-                     if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)}  # fmt: skip
-    for node in ast.walk(tree) if objects else ():
-        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute) or id(node) in guarded_ids:
-            continue
-        class_name, method = objects.get(ast.unparse(node.func.value), ""), node.func.attr
-        path, name, attributes = classes.get(class_name, ("", "", frozenset()))
-        if path and not method.startswith("__") and method not in attributes and method not in assigned_attributes:
-            yield FailingCall(path, name, method, node.func)
+    called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+    attributes = [node for node in nodes if isinstance(node, ast.Attribute)]
+    assigned_attributes = {node.attr for node in attributes if not isinstance(node.ctx, ast.Load)}
+    for node in attributes:
+        known = classes.get(objects.get(ast.unparse(node.value), ""))
+        is_known = known is None or node.attr.startswith("_") or node.attr in known.attributes | assigned_attributes
+        if known is not None and not is_known and id(node) not in guarded_ids:
+            yield FailingUse(known.path, known.name, node.attr, id(node) in called_ids, node)
 
 
 def _find_objects(tree: ast.Module, classes: Collection[str]) -> dict[str, str]:

@@ -28,6 +28,8 @@ _SOURCE_SEARCH = re.compile(r"\bGLOB(?:_RECURSE)?\b|\baux_source_directory\b", r
 _PYTHON_COMMENT = re.compile(r"#.*")
 _UNDECLARED = re.compile(r"\b(?:allow_undeclared_parameters|automatically_declare_parameters_from_overrides)\b")
 """The options of nodes whose parameters need no declaration."""
+_LAUNCH_IMPORT = re.compile(r"^\s*from\s+launch(?:_ros)?(?:\.\w+)*\s+import\b", re.MULTILINE)
+_NODE_IMPORT = re.compile(r"^\s*(?:from|import)\s+(?:rclpy|rospy)\b", re.MULTILINE)
 _COUNTERPARTS = {
     NameKind.PUBLISHER: NameKind.SUBSCRIPTION,
     NameKind.SUBSCRIPTION: NameKind.PUBLISHER,
@@ -40,7 +42,7 @@ _COUNTERPARTS = {
 
 
 class UnchangedSources:
-    """The unchanged sources of a package, without tests, launch files and unbuilt copies.
+    """The unchanged sources of a package, without tests, launch files, their helper modules and unbuilt copies.
 
     Args:
         version: the version of the repository.
@@ -118,7 +120,8 @@ class UnchangedSources:
     @cached_property
     def _texts(self) -> dict[str, str]:
         paths = self._version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), self._package)
-        return {path: self._version.text(path) for path in paths if self._is_searched(PurePosixPath(path))}
+        texts = {path: self._version.text(path) for path in paths if self._is_searched(PurePosixPath(path))}
+        return {path: text for path, text in texts.items() if not _only_makes_actions(path, text)}
 
     def _is_searched(self, path: PurePosixPath) -> bool:
         if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
@@ -153,6 +156,12 @@ class UnchangedSources:
             return None
         paths = (source for parts in facts.targets.values() for source in parts.sources)
         return frozenset((PurePosixPath(self._package) / path).as_posix() for path in paths)
+
+
+def _only_makes_actions(path: str, text: str) -> bool:
+    """Return whether a Python module makes actions for launch files, and no node."""
+    is_helper = path.endswith(PYTHON_SUFFIX) and _LAUNCH_IMPORT.search(text) is not None
+    return is_helper and _NODE_IMPORT.search(text) is None
 
 
 def get_counterpart(kind: NameKind) -> NameKind | None:

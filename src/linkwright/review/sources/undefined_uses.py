@@ -1,12 +1,12 @@
-"""Find the names and methods that a changed Python source uses although nothing defines them."""
+"""Find the names and attributes that a changed Python source uses although nothing defines them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
-from linkwright.review.sources.names import SourceNames
+from linkwright.review.sources.names import OwnUse, SourceNames
 
 
 class UndefinedUse(NamedTuple):
@@ -17,14 +17,17 @@ class UndefinedUse(NamedTuple):
     reason: Phrase
 
 
-def find_undefined_uses(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iterator[UndefinedUse]:
-    """Yield the undefined names and methods that only the new version of a source uses.
+def find_undefined_uses(
+    old: SourceNames, new: SourceNames, is_defined: Callable[[OwnUse, str], bool], *, is_added: bool
+) -> Iterator[UndefinedUse]:
+    """Yield the undefined names, attributes and methods that only the new version of a source uses.
 
-    If the old version used undefined names, something unknown may define them, so new ones are not certain.
+    If the old version used undefined ones, something unknown may define them, so new ones are not certain.
 
     Args:
         old: the names in the old source.
         new: the names in the new source.
+        is_defined: whether another source may define an attribute that a class uses, by its use and name.
         is_added: whether only the new version has the source.
     """
     for name, span in new.undefined_names.items() if not is_added else ():
@@ -33,7 +36,16 @@ def find_undefined_uses(old: SourceNames, new: SourceNames, *, is_added: bool) -
             yield UndefinedUse(phrase("uses '{name}', which it no longer defines or imports", name=name), span, reason)
         elif old.bound_names and not old.undefined_names:
             yield UndefinedUse(phrase("uses '{name}', which nothing defines", name=name), span, reason)
-    for name, span in new.undefined_methods.items():
-        if name in old.attributes:
-            text = phrase("calls its method '{name}', which is no longer defined", name=name)
-            yield UndefinedUse(text, span, phrase("the call fails"))
+    for name, use in new.undefined_attributes.items() if not is_added and old.bound_names else ():
+        is_lost = name in old.attributes
+        is_certain = is_lost or not (name.startswith("_") or old.undefined_attributes)  # a base class may have it
+        if not is_certain or is_defined(use, name):
+            continue
+        if use.is_call:
+            lost = phrase("calls its method '{name}', which is no longer defined", name=name)
+            text = lost if is_lost else phrase("calls its method '{name}', which nothing defines", name=name)
+            yield UndefinedUse(text, use.span, phrase("the call fails"))
+        else:
+            lost = phrase("uses its attribute '{name}', which is no longer defined", name=name)
+            text = lost if is_lost else phrase("uses its attribute '{name}', which nothing defines", name=name)
+            yield UndefinedUse(text, use.span, phrase("the access fails"))

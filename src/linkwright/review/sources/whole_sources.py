@@ -29,6 +29,7 @@ from linkwright.review.sources.package_imports import (
     is_installed_package,
 )
 from linkwright.review.sources.protected_members import compare_protected
+from linkwright.review.sources.python_methods import is_defined_by_others
 from linkwright.review.sources.rates import compare_loops, compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_removal_reason
 from linkwright.review.sources.separate_programs import are_in_separate_programs
@@ -182,8 +183,10 @@ class WholeSourcePair:
                 )
 
     def find_undefined(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names and methods that the source uses although nothing defines or imports them any more."""
-        for use in find_undefined_uses(old_names, new_names, is_added=self.file.old_path is None):
+        """Yield the names and attributes that the source uses although nothing defines or imports them."""
+        path = self.file.new_path or ""
+        is_defined = partial(is_defined_by_others, self.new.version, path)
+        for use in find_undefined_uses(old_names, new_names, is_defined, is_added=self.file.old_path is None):
             yield self.make_change(use.text, use.span, self.new, use.reason)
 
     def find_added_header(self) -> Iterator[Change]:
