@@ -72,7 +72,7 @@ def _find_uses(
     """
     for name in names:
         pattern = re.compile(rf"(?<![\w.>:])(?P<scopes>(?:\w+::)*){name}\b{use_pattern}")
-        matches = (match for match in pattern.finditer(code) if scopes.issuperset(match["scopes"].split("::")[:-1]))
+        matches = (match for match in pattern.finditer(code) if scopes >= set(match["scopes"].split("::")[:-1]))
         use = next(matches, None)
         if use is not None:
             yield path, _make_change(path, header, name, code[: use.start()].count("\n") + 1)
