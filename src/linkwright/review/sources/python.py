@@ -142,7 +142,7 @@ def _find_enumeration_constants(python: PythonFile, node: ast.expr) -> Iterator[
             yield value
 
 
-def parse_source(source: SourceText) -> PythonFile:
+def parse_source(source: SourceText) -> PythonSource:
     """Return a parsed Python 3 or Python 2 source.
 
     Raises:
@@ -196,7 +196,7 @@ class _Reader:
         names: the collection to which the names are added.
     """
 
-    def __init__(self, python: PythonFile, names: SourceNames) -> None:
+    def __init__(self, python: PythonSource, names: SourceNames) -> None:
         self._python = python
         self._names = names
         self._types = PythonTypes(python.tree)
@@ -556,6 +556,9 @@ class _Reader:
         text = " ".join(ast.unparse(node).split())
         text = text if '"' in text else text.replace("'", '"')  # reports quote it by '
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node), full_type=full_type))
+        texts = self._python.find_texts(node)
+        if texts:
+            self._names.choices[text] = texts
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:
             self._names.add_default(kind, text, *parameter)
