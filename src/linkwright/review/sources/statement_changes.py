@@ -15,13 +15,14 @@ from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
+from linkwright.review.sources.command_arguments import find_read_arguments
 from linkwright.review.sources.deferred_imports import find_deferred_imports
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.lost_message_frames import find_lost_message_frames
 from linkwright.review.sources.moved_calls import find_moved_calls
 from linkwright.review.sources.moved_code import without_functions, without_statements
-from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.opposite_signs import find_opposite_reason
@@ -51,6 +52,7 @@ def compare_statements(
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file, reported)
         changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_arguments(old, new, file.old_path, file.new_path)
         changes += _find_moved_calls(old, new, file.old_path, file.new_path)
         changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
@@ -146,6 +148,15 @@ def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_
     for change in find_new_failures(*sides):
         effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
         yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
+
+
+def _find_arguments(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the argument of the command line that a program in Python newly needs."""
+    if new_path.endswith(PYTHON_SUFFIX):
+        parsed = try_parse_versions(old.version.file(old_path), new.version.file(new_path))
+        for item in find_read_arguments(*parsed) if parsed is not None else ():
+            location = Location(new_path, item.span.line, item.span.column)
+            yield Change(item.sentence, Effect.BREAKING, item.reason, location)
 
 
 def _find_moved_calls(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
