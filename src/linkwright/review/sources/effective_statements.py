@@ -19,7 +19,7 @@ def list_effective_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
     """
     previous: ast.stmt | None = None
     for part in (part for statement in body for part in _split(statement)):
-        is_exit = isinstance(part, _EXITS) and isinstance(previous, _EXITS)
+        is_exit = isinstance(part, _EXITS) and type(part) is type(previous)
         is_repeated = previous is not None and ast.dump(part) == ast.dump(previous) and _is_repeatable(part)
         if not is_exit and not is_repeated:
             yield part

@@ -40,6 +40,7 @@ from linkwright.review.sources.signatures import (
     read_method_signatures,
     read_signature,
 )
+from linkwright.review.sources.uncalled_functions import find_uncalled_functions
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _NAME_FIRST_CLASSES = {
@@ -208,7 +209,9 @@ class _Reader:
     def read(self) -> None:
         """Add the names."""
         tree = self._python.tree
+        uncalled = {id(node) for function in find_uncalled_functions(tree) for node in ast.walk(function)}
         nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Call, ast.Assign, ast.For))]
+        nodes = [node for node in nodes if id(node) not in uncalled]
         for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)):
             if isinstance(node, ast.Assign):
                 self._read_assignment(node)

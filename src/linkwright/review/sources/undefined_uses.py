@@ -10,11 +10,14 @@ from linkwright.review.sources.names import SourceNames
 
 
 class UndefinedUse(NamedTuple):
-    """A use of an undefined name, with the text of its line, its location and the reason why it is breaking."""
+    """A use of an undefined name, with the text of its line, its location and the reason why it is breaking.
+
+    The reason is None in an added source, which nobody used before.
+    """
 
     text: Phrase
     span: Span
-    reason: Phrase
+    reason: Phrase | None
 
 
 def find_undefined_uses(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iterator[UndefinedUse]:
@@ -27,12 +30,13 @@ def find_undefined_uses(old: SourceNames, new: SourceNames, *, is_added: bool) -
         new: the names in the new source.
         is_added: whether only the new version has the source.
     """
-    for name, span in new.undefined_names.items() if not is_added else ():
+    for name, span in new.undefined_names.items():
         reason = phrase("the code that uses the name fails")
         if name in old.bound_names:
             yield UndefinedUse(phrase("uses '{name}', which it no longer defines or imports", name=name), span, reason)
-        elif old.bound_names and not old.undefined_names:
-            yield UndefinedUse(phrase("uses '{name}', which nothing defines", name=name), span, reason)
+        elif is_added or (old.bound_names and not old.undefined_names):
+            text = phrase("uses '{name}', which nothing defines", name=name)
+            yield UndefinedUse(text, span, None if is_added else reason)
     for name, span in new.undefined_methods.items():
         if name in old.attributes:
             text = phrase("calls its method '{name}', which is no longer defined", name=name)
