@@ -153,16 +153,17 @@ def find_wrapped_names(definition: ast.ClassDef, base: ast.ClassDef | None = Non
     }
     places = _find_places(constructor)
     members = _find_members(definition, constructor, places)
-    if base is not None:
-        stored = _list_stored_members(definition)
-        inherited = _find_inherited_members(base, constructor, places)
-        members |= {member: place for member, place in inherited.items() if member not in stored}
+    inherited = {} if base is None else _find_inherited_members(base, constructor, places)
+    stored = _list_stored_members(definition)
+    members |= {member: place for member, place in inherited.items() if member not in stored}
+    stored = _list_stored_members(constructor)  # other methods run later
+    first_members = members | {member: place for member, place in inherited.items() if member not in stored}
     constructor_nodes = {id(node) for node in ast.walk(constructor)}
 
     def find_place(node: ast.expr | None, *, is_inside: bool) -> tuple[int, str] | None:
         if isinstance(node, ast.Name) and is_inside:
             return places.get(node.id)
-        return None if node is None else members.get(ast.unparse(node))
+        return None if node is None else (first_members if is_inside else members).get(ast.unparse(node))
 
     for call in (node for node in ast.walk(definition) if isinstance(node, ast.Call)):
         made = _read_creation(call)
@@ -200,8 +201,8 @@ def _find_members(
     return members
 
 
-def _list_stored_members(definition: ast.ClassDef) -> list[str]:
-    """Return the attributes that get a value in a class, as often as they do."""
+def _list_stored_members(definition: ast.ClassDef | ast.FunctionDef) -> list[str]:
+    """Return the attributes that get a value in a class or method, as often as they do."""
     nodes = (node for node in ast.walk(definition) if isinstance(node, ast.Attribute))
     return [ast.unparse(node) for node in nodes if isinstance(node.ctx, ast.Store)]
 
