@@ -31,7 +31,7 @@ class ReadArgument(NamedTuple):
 
 
 def find_read_arguments(old: PythonFile, new: PythonFile) -> Iterator[ReadArgument]:
-    """Yield the argument of the command line that a program newly reads by its index, and fails without.
+    """Yield the argument of the command line that a program newly reads by its index, and without which it fails.
 
     Programs that use ``sys.argv`` in another way may test the number of the arguments.
 
@@ -82,9 +82,9 @@ def _read_indexes(tree: ast.Module) -> Mapping[int, ast.stmt] | None:
 def _list_unconditional(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
     """Yield the simple statements of a program that run in any case."""
     for statement in body:
-        is_start = isinstance(statement, ast.If) and _NAME in ast.unparse(statement.test)
-        is_main = isinstance(statement, ast.FunctionDef) and statement.name == _MAIN
-        if is_start or is_main:
+        if (isinstance(statement, ast.If) and _NAME in ast.unparse(statement.test)) or (
+            isinstance(statement, ast.FunctionDef) and statement.name == _MAIN
+        ):
             yield from _list_unconditional(statement.body)
         elif isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)):
             yield statement

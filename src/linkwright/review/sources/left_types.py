@@ -26,7 +26,7 @@ _COMMON_NAME = re.compile(
 def find_left_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the sources whose counterpart has another type now, each with a change.
 
-    In other packages, relative names are compared only if no third package offers the name, and it is no common one.
+    In other packages, relative names are compared only if no third package offers the name, and not common ones.
     A name that another source still has with the old type is left out.
     """
     sources = _Sources(versions.new)

@@ -25,6 +25,7 @@ from linkwright.review.sources.moved_code import without_functions, without_stat
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
+from linkwright.review.sources.opened_files import describe_opened_files
 from linkwright.review.sources.opposite_signs import find_opposite_reason
 from linkwright.review.sources.reading import try_parse_versions
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
@@ -66,6 +67,8 @@ def compare_statements(
     elif file.new_path is not None:
         changes += _compare_commands(old, new, file, changes)
         changes += _find_added_code(old, new, file.new_path, changes)
+        if not changes and file.new_path.endswith(PYTHON_SUFFIX):
+            changes += _find_opened_files(new, file.new_path)
     return changes[len(reported) :]
 
 
@@ -216,6 +219,13 @@ def _compare_code(
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
         yield Change(change.text, location=location, is_code=True)
+
+
+def _find_opened_files(new: ChangedSources, path: str) -> Iterator[Change]:
+    """Yield the files that an added script reads and writes of which no other line tells anything."""
+    found = describe_opened_files(new.version.file(path))
+    if found is not None:
+        yield Change(found[0], location=Location(path, found[1].line, found[1].column))
 
 
 def _find_added_code(

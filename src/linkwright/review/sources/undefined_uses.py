@@ -12,7 +12,7 @@ from linkwright.review.sources.names import SourceNames
 class UndefinedUse(NamedTuple):
     """A use of an undefined name, with the text of its line, its location and the reason why it is breaking.
 
-    The reason is None in an added source, which nobody used before.
+    The reason is None in an added source, which no program used before.
     """
 
     text: Phrase
