@@ -114,6 +114,7 @@ def test_many_keys_share_one_short_line(review_lines):
 
 
 SCRIPT = """import serial
+from .tools import publish, read
 
 PORT = "/dev/ttyACM0"
 RATE: int = 50

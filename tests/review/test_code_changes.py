@@ -249,12 +249,22 @@ def send(text):
         ("def send(text)", "def post(text)", "uses 'send', which it no longer defines or imports"),
         ("import math\n", "from std_msgs.msg import *\n", "uses 'math', which it no longer defines or imports"),
         ("math.floor(", "np.floor(", "uses 'np', which nothing defines"),
+        ("import math\n", "from numpy import *\nself.run()\n", "uses 'self', which nothing defines"),
     ],
 )
 def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, new, expected):
     repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
     repository.write({"arm/scripts/half.py": USER.replace(old, new)})
     assert breaking(compare(repository)) == [expected]
+
+
+def test_an_undefined_name_of_an_added_source_is_told_and_breaks_nothing(repository, compare):
+    repository.commit(MANIFEST)
+    repository.write({"arm/scripts/half.py": USER.replace("math.floor(", "np.floor(")})
+    result = compare(repository)
+    (found,) = result.subjects
+    assert "uses 'np', which nothing defines" in sentences(found)
+    assert breaking(result) == []
 
 
 @pytest.mark.parametrize(

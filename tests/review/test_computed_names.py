@@ -240,3 +240,43 @@ def test_default_of_a_new_argument_is_a_part_of_the_names(repository, compare, d
     ]
     expected = "callers that do not pass 'side' use the name 'left/move' instead of 'move'"
     assert (expected in reasons) == is_breaking
+
+
+CHOSEN = """import sys
+from rclpy.node import Node
+
+if sys.argv[1] == "1":
+    side = "left"
+else:
+    side = OTHER
+NAME = "state"
+
+
+class Arm(Node):
+    def __init__(self):
+        super().__init__("arm")
+        self.create_publisher(String, EXPRESSION, 10)
+"""
+
+
+@pytest.mark.parametrize(
+    ("other", "expression", "texts", "is_breaking"),
+    [
+        ('"right"', 'f"{side}/{NAME}"', "'left/state' or 'right/state'", True),
+        ('"right"', 'side + "/state"', "'left/state' or 'right/state'", True),
+        ('""', 'f"{side}/state"', "'left/state' or '/state'", False),
+        ('"right" if BIG else "rear"', 'f"{side}/state"', "'left/state', 'right/state' or 'rear/state'", True),
+        ("sys.argv[2]", 'f"{side}/state"', None, False),
+        ('"right"', 'f"{side:>9}/state"', None, False),
+    ],
+)
+def test_computed_name_has_the_values_that_the_source_gives(repository, compare, other, expression, texts, is_breaking):
+    text = CHOSEN.replace("OTHER", other)
+    repository.commit({**MANIFEST, PATH: text.replace("EXPRESSION", '"/state"')})
+    repository.write({PATH: text.replace("EXPRESSION", expression)})
+    result = compare(repository)
+    (found,) = result.subjects
+    (line,) = sentences(found)  # no other line repeats the argument of the call
+    assert line.startswith("publisher '/state' (String) has a computed name now: ")
+    assert line.endswith(f", which is {texts}") if texts else "which is" not in line
+    assert bool(breaking(result)) == is_breaking

@@ -60,3 +60,11 @@ def test_slide_reaches_farthest_at_a_limit(package, compare, upper):
 def test_quantity_has_the_digits_that_tell_both_versions_apart(old, new, texts):
     (figure,) = compare_quantity(phrase("mass"), "kg", old, new)
     assert (figure.old, figure.new) == texts
+
+
+def test_robot_without_mass_has_no_center_of_mass(package, compare):
+    package.commit({SEGMENT: MACRO.replace('mass value="2"', 'mass value="0"')})
+    package.write({SEGMENT: MACRO})
+    figures = {str(figure.name): (figure.old, figure.new) for figure in subject(compare(package), PATH).figures}
+    assert figures["mass"] == ("0", "6")
+    assert "center of mass" not in figures

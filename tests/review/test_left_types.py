@@ -18,7 +18,10 @@ TOPIC = "subscription '{name}' still has the type {old}; 'lamp/a.py' now uses In
         ("light", "lamp/b.py", SUBSCRIBER.format(name="light", type="String"), ["String"]),
         ("/light", "lamp/b.py", SUBSCRIBER.format(name="light", type="String"), ["String"]),
         ("/light", "house/b.py", SUBSCRIBER.format(name="/light", type="String"), ["String"]),
-        ("light", "house/b.py", SUBSCRIBER.format(name="light", type="String"), []),
+        ("light", "house/b.py", SUBSCRIBER.format(name="light", type="String"), ["String"]),
+        ("light", "house/b.py", SUBSCRIBER.format(name="light", type="Int32"), []),
+        ("~/light", "house/b.py", SUBSCRIBER.format(name="~/light", type="String"), []),
+        ("image_raw", "house/b.py", SUBSCRIBER.format(name="image_raw", type="String"), []),
         ("light", "lamp/b.py", SUBSCRIBER.format(name="light", type="Int32"), []),
         ("light", "lamp/b.py", SUBSCRIBER.format(name="lights", type="String"), []),
         ("light", "lamp/test/b.py", SUBSCRIBER.format(name="light", type="String"), []),
@@ -46,6 +49,20 @@ def test_a_subscription_whose_old_type_another_source_still_publishes_is_not_nam
             "lamp/a.py": PUBLISHER.format(name="light", type="String"),
             "lamp/simulated.py": PUBLISHER.format(name="light", type="String"),
             "lamp/b.py": SUBSCRIBER.format(name="light", type="String"),
+        }
+    )
+    repository.write({"lamp/a.py": PUBLISHER.format(name="light", type="Int32")})
+    assert not [line for line in breaking(compare(repository)) if "still has the type" in line]
+
+
+def test_a_subscription_of_another_package_is_not_named_if_a_third_one_publishes_the_topic(repository, compare):
+    packages = "lamp", "house", "sun"
+    repository.commit(
+        {
+            **{f"{name}/package.xml": MANIFEST.format(name=name) for name in packages},
+            "lamp/a.py": PUBLISHER.format(name="light", type="String"),
+            "sun/a.py": PUBLISHER.format(name="light", type="Int32"),
+            "house/b.py": SUBSCRIBER.format(name="light", type="String"),
         }
     )
     repository.write({"lamp/a.py": PUBLISHER.format(name="light", type="Int32")})

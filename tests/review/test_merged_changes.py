@@ -383,3 +383,21 @@ def test_parameters_of_one_interface_are_one_line(package, compare):
         "extension 'ros2_control arm': joint upper_joint command_interface position: "
         "param min -1 -> -2, param max 1 -> 3"
     )
+
+
+def test_files_of_merged_changes_are_no_other_files(repository, compare):
+    part = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="NAME"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="NAME_joint" type="fixed"><parent link="base"/><child link="NAME"/></joint>
+</robot>
+"""
+    includes = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("left", "right"))
+    robot = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><link name="base"/>{includes}</robot>'
+    parts = {f"arm/urdf/{name}.xacro": part.replace("NAME", name) for name in ("left", "right")}
+    repository.commit({"arm/urdf/r.urdf.xacro": robot, **parts})
+    repository.write({path: text.replace('mass value="1"', 'mass value="2"') for path, text in parts.items()})
+    result = compare(repository)
+    (found,) = subject(result, "arm/urdf/r.urdf.xacro").changes
+    assert str(format_change(found)) == "link 'left': inertial mass 1 -> 2 kg; also 'right'"
+    assert result.other_files == []

@@ -67,3 +67,39 @@ def test_a_field_that_the_interface_and_the_source_get_together_is_no_missing_on
     state = "int32 LIMIT = 5\nint32 speed\nint32 force\n"
     repository.write({PATH: f"{text}    state.force = 2\n", "arm_msgs/msg/State.msg": state})
     assert not any(line.startswith("uses") for line in breaking(compare(repository)))
+
+
+CALLBACK = """import {library}
+from geometry_msgs.msg import Point
+from std_srvs.srv import SetBool
+
+
+class Drive:
+    def __init__(self):
+        self.create_subscription(Point, "place", self.take, 10)
+        self.create_service(SetBool, "lamp", self.switch)
+
+    def take(self, place):
+        {taken}
+
+    def switch(self, request, response):
+        {switched}
+"""
+
+
+@pytest.mark.parametrize(
+    ("library", "taken", "switched", "expected"),
+    [
+        ("rclpy", "print(place.theta)", "pass", ["uses 'theta', which 'geometry_msgs/Point' does not have"]),
+        ("rclpy", "pass", "response.data = request.data",
+         ["uses 'response data', which 'std_srvs/SetBool' does not have"]),
+        ("rclpy", "print(place.z)", "response.success = request.data", []),
+        ("rospy", "print(place.theta)", "pass", []),
+    ],
+)  # fmt: skip
+def test_a_new_use_of_a_field_that_a_common_type_does_not_have_is_breaking(
+    repository, compare, library, taken, switched, expected
+):
+    repository.commit({**FILES, PATH: CALLBACK.format(library=library, taken="pass", switched="pass")})
+    repository.write({PATH: CALLBACK.format(library=library, taken=taken, switched=switched)})
+    assert breaking(compare(repository)) == expected

@@ -515,7 +515,7 @@ MODEL = f"""<sdf version="1.7"><model name="cube"><link name="body">
         ("msg/Count.msg", "uint8 MAX=3\nint32 count\nstring[] names\n",
          "interface added: int32 count, string[] names, MAX = 3"),
         ("msg/Mode.msg", "uint8 SLOW=0\nuint8 FAST=1\n", "interface added: SLOW = 0, FAST = 1"),
-        ("srv/Ask.srv", "int32 a\n---\nbool b\n", "interface added: int32 request a, bool response b"),
+        ("srv/Ask.srv", "int32 a\n---\nbool b\n", "interface added: request: int32 a; response: bool b"),
         ("models/cube/model.sdf", MODEL,
          "model added: links body, visual box size 1 1 1, collision box size 1 1 1 (2 times), mass 3 kg"),
         ("config/nav.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1, alpha2: 0.2}\n",

@@ -49,3 +49,13 @@ def test_names_of_a_script_that_nothing_names_are_not_missed(repository, compare
     repository.write({PATH: None})
     lost = [line for line in breaking(compare(repository)) if line.startswith(("publishers", "nodes", "command-line"))]
     assert len(lost) == (3 if is_breaking else 0)
+
+
+@pytest.mark.parametrize("is_started", [False, True])
+def test_names_of_a_changed_script_are_missed_if_a_file_starts_it_now(repository, compare, is_started):
+    package = PACKAGE_XML.replace("arm_description", "arm").replace("</package>", f"{EXPORT}</package>")
+    setup = {"arm/setup.py": SETUP.replace("ENTRY", ""), "arm/arm/__init__.py": ""}
+    repository.commit({"arm/package.xml": package, PATH: SCRIPT, **setup})
+    start = {"start.sh": "python3 arm/arm/drive_test.py\n"} if is_started else {}
+    repository.write({PATH: SCRIPT.replace('"--port"', '"--device"'), **start})
+    assert bool(breaking(compare(repository))) == is_started

@@ -96,6 +96,19 @@ def test_package_that_moves_to_another_folder_is_one_change_and_breaks_nothing(r
     result = compare(repository, "HEAD~1..HEAD")
     assert [sentences(found) for found in result.subjects] == [["package 'arm_tools' moved from arm_tools/"]]
     assert breaking(result) == []
+    assert result.other_files == []
+
+
+def test_package_that_moves_to_the_root_has_its_changed_files(repository, compare):
+    files = {f"gear/arm_tools/{path.removeprefix('arm_tools/')}": text for path, text in FILES.items()}
+    notes = "Notes about the gear.\n" * 9
+    repository.commit({**files, "gear/arm_tools/notes.txt": notes})
+    moved = {path.removeprefix("gear/arm_tools/"): text for path, text in files.items()}
+    repository.commit({**moved, **dict.fromkeys([*files, "gear/arm_tools/notes.txt"]), "notes.txt": f"{notes}More.\n"})
+    result = compare(repository, "HEAD~1..HEAD")
+    expected = "package 'arm_tools' moved from gear/arm_tools/ to the root of the repository"
+    assert sentences(subject(result, "package.xml")) == [expected]
+    assert result.other_files == ["notes.txt"]
 
 
 def test_package_with_another_manifest_in_another_folder_is_moved(repository, compare):

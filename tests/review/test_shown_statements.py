@@ -133,3 +133,36 @@ def test_equal_added_statements_are_shown_with_their_number(repository, compare)
     send = "self.arm.publish(pose)"
     lines = list_lines(repository, compare, send, f"{send}\ntime.sleep(1)\n{send}\ntime.sleep(1)\n{send}")
     assert lines == ["in 'Arm.move()': `time.sleep(1)` added (2 times); `self.arm.publish(pose)` added (2 times)"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "changes"),
+    [
+        ("a, (b, c) = goal.x, goal.y\nself.d(a, b, c)", "a = goal.x\nb, c = goal.y\nself.d(a, b, c)", []),
+        ("a = goal.x\nself.b, c = goal.y, 1\nself.d(a, c)", "a, self.b = goal.x, goal.y\nc = 1\nself.d(a, c)", []),
+        ("a, b = 1, 2\nself.d(a, b)", "a, b = 1, goal.c\nself.d(a, b)", ["`b = 2` -> `b = goal.c`"]),
+        ("a = 0.1\na = 0.1\nself.b(a)", "a = 0.1\nself.b(a)", []),
+        ("return goal.a\nreturn goal.b", "return goal.a", []),
+        ("if goal.a:\n    return goal.a\n    return goal.b", "if goal.a:\n    return goal.a", []),
+        ("self.wait()\nself.stop()\nself.wait()", "self.stop()\nself.wait()", ["one of 2 `self.wait()` removed"]),
+    ],
+)  # fmt: skip
+def test_statements_without_an_effect_are_no_change(repository, compare, old, new, changes):
+    text = FUNCTION.replace("self.run(goal)", "EXTRA")  # a statement whose change is shown in any case
+    for code, extra, write in ((old, "f(goal, 1)", repository.commit), (new, "f(goal, 2)", repository.write)):
+        write({PATH: text.format(code.replace("\n", "\n        ")).replace("EXTRA", extra)})
+    lines = [line for line in sentences(subject(compare(repository), PATH)) if line.startswith("in ")]
+    assert lines == [f"in 'Arm.move()': {change}" for change in changes]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("a, b = b, a", "a = b\nb = a"),
+        ("i[a], b = 1, i[b]", "i[a] = 1\nb = i[b]"),
+        ("a = a + goal.x\na = a + goal.x", "a = a + goal.x"),
+        ("a = self.pop()\na = self.pop()", "a = self.pop()"),
+    ],
+)
+def test_statements_that_depend_on_each_other_are_changes(repository, compare, old, new):
+    assert list_lines(repository, compare, f"{old}\nself.d(a, b)", f"{new}\nself.d(a, b)")

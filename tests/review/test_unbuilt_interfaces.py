@@ -45,8 +45,8 @@ def test_interface_that_was_never_built_is_used_by_nobody(repository, compare, o
 @pytest.mark.parametrize(
     ("listed", "expected"),
     [
-        ("", "interface added: float64 request x; CMakeLists.txt does not build it"),
-        ("srv/Move.srv", "interface added: float64 request x"),
+        ("", "interface added: request: float64 x; CMakeLists.txt does not build it"),
+        ("srv/Move.srv", "interface added: request: float64 x"),
     ],
 )
 def test_added_interface_that_is_not_built_is_named(repository, compare, listed, expected):

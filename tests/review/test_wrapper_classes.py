@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from tests.repositories import PACKAGE_XML
@@ -153,3 +155,59 @@ def test_name_that_an_added_node_publishes_is_moved(repository, compare, added, 
     repository.write({path: LAUNCH.format(program="mixer", remap="").replace("</launch>", node)})
     found = [change for change in subject(compare(repository), path).changes if change.reason is not None]
     assert [str(change.reason) for change in found] == ([CERTAIN.format("/x")] if is_breaking else [])
+
+
+HANDLERS = """import rospy
+
+
+class Handler(object):
+    def __init__(self, name, topic, msg_type):
+        self.topic = topic
+        self.msg_type = msg_type
+        rospy.init_node(name)
+
+
+class Sender(Handler):
+    def __init__(self, name, topic, msg_type, size=10):
+        CALL
+        self.pub = rospy.Publisher(self.topic, self.msg_type, queue_size=size)
+"""
+HANDLER_USER = "from handlers import Sender\nfrom std_msgs.msg import Bool, String\n\nSender('arm', 'state', String)\n"
+
+
+@pytest.mark.parametrize(
+    ("call", "is_told"),
+    [
+        ("super(Sender, self).__init__(name, topic, msg_type)", True),
+        ("super().__init__(name, msg_type=msg_type, topic=topic)", True),
+        ("Handler.__init__(self, name, topic, msg_type)", True),
+        ("super().__init__(name, topic.lower(), msg_type)", False),
+        ("super().__init__(name, topic, msg_type)\n        self.topic = 'other'", False),
+        ("super().__init__(name, topic, msg_type)\n        LATER", True),
+    ],
+)
+def test_name_that_a_class_passes_to_its_base_class_is_told(repository, compare, call, is_told):
+    text = HANDLERS.replace("CALL", call.replace("\n        LATER", ""))
+    text += "\n    def move(self, topic):\n        self.topic = topic\n" if "LATER" in call else ""
+    files = {"arm/scripts/handlers.py": text, "arm/scripts/arm.py": HANDLER_USER}
+    repository.commit({**MANIFEST, **files})
+    repository.write({"arm/scripts/arm.py": HANDLER_USER.replace(", String)", ", Bool)")})
+    assert ("publisher 'state': type String -> Bool" in breaking(compare(repository))) == is_told
+
+
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+@pytest.mark.parametrize(("target", "is_beside"), [("../handlers", True), ("../../handlers", False)])
+def test_modules_behind_a_link_are_read_if_they_are_beside_the_package(repository, compare, target, is_beside):
+    text = HANDLERS.replace("CALL", "Handler.__init__(self, name, topic, msg_type)")
+    package = repository.root / "src/arm"
+    package.mkdir(parents=True)
+    (package / "handlers").symlink_to(target)
+    repository.commit(
+        {
+            "src/arm/package.xml": MANIFEST["arm/package.xml"],
+            "src/handlers/__init__.py" if is_beside else "handlers/__init__.py": text,
+            "src/arm/arm.py": HANDLER_USER,
+        }
+    )
+    repository.write({"src/arm/arm.py": HANDLER_USER.replace(", String)", ", Bool)")})
+    assert ("publisher 'state': type String -> Bool" in breaking(compare(repository))) == is_beside

@@ -43,16 +43,22 @@ def read_texts(package: str) -> dict[str, str]:
     return _read_texts(package, not is_before_iron())
 
 
+def read_all_texts(package: str) -> list[tuple[str, str]]:
+    """Return the names and texts of a package's interface files of all distributions, in the order of the file."""
+    return [(heading.removesuffix(_LATER_SUFFIX), text) for heading, text in _read_sections(package)]
+
+
 @cache
 def _read_texts(package: str, later: bool) -> dict[str, str]:
-    if package not in list_packages():
-        return {}
+    return {
+        heading.removesuffix(_LATER_SUFFIX): text
+        for heading, text in (_read_sections(package) if package in list_packages() else ())
+        if later or not heading.endswith(_LATER_SUFFIX)
+    }
+
+
+def _read_sections(package: str) -> list[tuple[str, str]]:
     with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - as above
         text = file.read()
-    texts_by_name: dict[str, str] = {}
-    for section in text.removeprefix(_HEADING_PREFIX).split("\n" + _HEADING_PREFIX):
-        heading, _, body = section.partition("\n")
-        name = heading.removesuffix(_LATER_SUFFIX)
-        if later or name == heading:
-            texts_by_name[name] = body if body.endswith("\n") or not body else body + "\n"
-    return texts_by_name
+    sections = (part.partition("\n") for part in text.removeprefix(_HEADING_PREFIX).split("\n" + _HEADING_PREFIX))
+    return [(heading, body if body.endswith("\n") or not body else body + "\n") for heading, _, body in sections]

@@ -191,9 +191,9 @@ def _merge_group(changes: list[Change], list_names: Callable[[Change], tuple[str
     for name in list_names(first)[:1]:
         del names[name]
     locations: dict[Location, None] = {}
-    for change in changes[1:]:
-        if change.location is not None and change.location != first.location:
-            locations[change.location] = None
+    for location in (location for change in changes for location in (change.location, *change.other_locations)):
+        if location is not None and location != first.location:
+            locations[location] = None
     reason = merge_reasons(change.reason for change in changes)
     sentence = first.sentence
     is_parameter = list_names is _list_parameter_names

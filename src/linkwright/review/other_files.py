@@ -101,7 +101,7 @@ def group_files(paths: Iterable[str], states: Mapping[str, Phrase]) -> list[tupl
     for (folder, _), group in groups.items():
         state = states.get(group[0])
         if len(group) >= _MIN_FILES:
-            result.append((f"{folder or posixpath.commonpath(group)}/", len(group), state))
+            result.append((f"{folder or posixpath.commonpath(group) or '.'}/", len(group), state))
         else:
             result += [(path, 1, state) for path in group]
     return result

@@ -292,7 +292,10 @@ def _add_folder_change(package: RenamedPackage, changes: Sequence[Change]) -> li
     """Return the changes to a manifest, with the old folder of a package that keeps its name."""
     if package.old_name != package.new_name or package.old_folder == package.new_folder:
         return list(changes)
-    text = phrase("package '{name}' moved from {folder}", name=package.new_name, folder=f"{package.old_folder or '.'}/")
+    values = {"name": package.new_name, "folder": f"{package.old_folder or '.'}/"}
+    text = phrase("package '{name}' moved from {folder}", **values)
+    if not package.new_folder:
+        text = phrase("package '{name}' moved from {folder} to the root of the repository", **values)
     return [Change(text), *changes]
 
 

@@ -523,7 +523,8 @@ def _add_changes(subjects: Sequence[Subject], changes: Iterable[tuple[str, Chang
 def _list_reported_paths(subjects: Sequence[Subject]) -> set[str]:
     """Return the paths of subjects with changes, and of the files that contain the changes."""
     changes = (change for subject in subjects for change in subject.changes)
-    files = {change.location.file for change in changes if change.location is not None}
+    locations = (location for change in changes for location in (change.location, *change.other_locations))
+    files = {location.file for location in locations if location is not None}
     return files | {subject.path for subject in subjects if not subject.is_empty}
 
 

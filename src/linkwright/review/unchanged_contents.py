@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import filecmp
 from collections.abc import Callable, Hashable
 from pathlib import Path, PurePosixPath
 
@@ -15,6 +16,7 @@ from linkwright.review.comments import XML_SUFFIXES
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
 from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
+from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.versions import Versions
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
@@ -24,9 +26,17 @@ _SUFFIXES_WITH_HASHES = (CMAKE_SUFFIX, ".sh", ".bash")
 
 
 def keeps_contents(versions: Versions, file: ChangedFile) -> bool:
-    """Return whether both versions of a file mean the same, as far as its format is known."""
-    if file.old_path is None or file.new_path != file.old_path or file.is_submodule or file.is_executable is not None:
+    """Return whether both versions of a file mean the same, as far as its format is known.
+
+    A file that moves with its package, which keeps its name, has to be the same.
+    """
+    if file.old_path is None or file.new_path is None or file.is_submodule or file.is_executable is not None:
         return False
+    if file.new_path != file.old_path:
+        packages = [item for item in find_renamed_packages(versions) if item.old_name == item.new_name]
+        has_moved = any(item.new_path(file.old_path) == file.new_path for item in packages)
+        paths = versions.old.file(file.old_path), versions.new.file(file.new_path)
+        return has_moved and all(path.is_file() for path in paths) and filecmp.cmp(*paths, shallow=False)
     read = _find_reader(file.path)
     if read is None:
         return False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
@@ -31,6 +32,13 @@ from linkwright.review.files.unused_exports import is_unused_export
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
+_KNOWN_MODULES = sys.stdlib_module_names | {
+    *("action_msgs", "ament_index_python", "builtin_interfaces", "cv_bridge", "geometry_msgs", "launch", "launch_ros"),
+    *("launch_testing", "launch_xml", "launch_yaml", "message_filters", "nav_msgs", "rcl_interfaces", "rclpy"),
+    *("roslaunch", "roslib", "rospkg", "rospy", "sensor_msgs", "std_msgs", "std_srvs", "tf", "tf2_py", "tf2_ros"),
+    *("urdf_parser_py", "xacro"),
+}
+"""The modules of Python and of packages of ROS that programs of all packages import."""
 _NUMBER = re.compile(r"-?\d+\Z")
 """The number of the version at the end of the name of a package."""
 _PATH_FOLDER = "bin"
@@ -227,6 +235,8 @@ def _report_unpaired(
             reason = phrase("the build fails under a condition under which it did not fail before")
         elif kind is FactKind.PACKAGE:
             reason = next((found for found in (_find_guard_reason(pair, fact) for fact in added) if found), None)
+        elif kind is FactKind.MODULE:
+            reason = _find_hidden_reason(pair, [fact.name for fact in added])
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
@@ -325,6 +335,19 @@ def _find_guard_reason(pair: FilePair, fact: Fact) -> Phrase | None:
     if not fact.value.endswith(WITHOUT_NOTHING) or fact.name in manifest:
         return None
     return phrase("without '{name}', which package.xml does not name, nothing is built", name=fact.name)
+
+
+def _find_hidden_reason(pair: FilePair, modules: Sequence[str]) -> Phrase | None:
+    """Return the reason why newly installed modules are breaking, because they hide others; None if they are not.
+
+    The modules of packages come before those of Python in the search path.
+    """
+    folder = pair.versions.new.package_of(pair.new_path) or ""
+    manifest = pair.versions.new.text((PurePosixPath(folder) / MANIFEST).as_posix())
+    hidden = [name for name in modules if name in _KNOWN_MODULES and f"<name>{name}</name>" not in manifest]
+    if not hidden:
+        return None
+    return phrase("programs that import the known module '{name}' find this one instead", name=hidden[0])
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, joined_first, phrase
 from linkwright.messages.definitions.idl import ENUMERATION, parse_idl_structures
 from linkwright.messages.definitions.interfaces import Constant, Field, Structure, is_interface_name, list_structures
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
@@ -131,15 +131,16 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     file = version.file(path)
     parts = read_structures(file)
     is_ros1 = file.suffix != _IDL and _is_ros1(file)
-    names = [
-        f"{_format_type(field, is_ros1=is_ros1)} {part}{field.name}"
-        for part, structure in parts.items()
-        for field in structure.fields
-    ]
-    names += [
-        f"{constant.name} = {constant.value!s}" for structure in parts.values() for constant in structure.constants
-    ]
-    contents = joined_first(names, MAX_NAMES) if names else None
+    is_idl = file.suffix == _IDL  # any number of structures, whose names are prefixes
+    texts = []
+    for part, structure in parts.items():
+        prefix = part if is_idl else ""
+        names = [f"{_format_type(field, is_ros1=is_ros1)} {prefix}{field.name}" for field in structure.fields]
+        names += [f"{constant.name} = {constant.value!s}" for constant in structure.constants]
+        if names:
+            items = joined_first(names, MAX_NAMES)
+            texts.append(phrase("{part}: {items}", part=part.strip(), items=items) if part and not is_idl else items)
+    contents = joined(texts, ", " if is_idl else "; ") if texts else None
     if not is_unbuilt(version, path):
         return contents
     if contents is None:

@@ -83,7 +83,8 @@ def _get_total_mass(measures: _Measures) -> float | None:
 
 
 def _get_center_of_mass(measures: _Measures) -> Array | None:
-    return None if measures.mass_properties is None else measures.mass_properties.center
+    properties = measures.mass_properties
+    return properties.center if properties is not None and properties.mass > 0 else None
 
 
 def _measure_scene(scene: Scene) -> Array | None:

@@ -263,12 +263,17 @@ def _compute_principal_moments(measures: RobotMeasures) -> Array | None:
     return properties.principal().moments if properties.mass > 0 else None
 
 
+def _get_center_of_mass(measures: RobotMeasures) -> Array | None:
+    properties = measures.mass_properties
+    return properties.center if properties.mass > 0 else None
+
+
 _QUANTITIES: tuple[tuple[Phrase, str, Callable[[RobotMeasures], object]], ...] = (
     (phrase("links"), "", lambda measures: len(measures.robot.links)),
     (phrase("joints"), "", lambda measures: len(measures.robot.joints)),
     (phrase("moving joints"), "", _count_moving_joints),
     (phrase("mass"), "kg", lambda measures: measures.mass_properties.mass),
-    (phrase("center of mass"), "m", lambda measures: measures.mass_properties.center),
+    (phrase("center of mass"), "m", _get_center_of_mass),
     (phrase("principal moments of inertia"), "kg m2", _compute_principal_moments),
     (phrase("size"), "m", lambda measures: measures.size),
     (phrase("triangles of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[0]),

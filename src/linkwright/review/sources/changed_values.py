@@ -30,6 +30,7 @@ from linkwright.review.sources.tokens import Token, TokenKind, match_brackets
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
+_F_STRING = re.compile(r"\A[fF](?=[\"'])")
 _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal tokens of two versions of a statement."""
 _VARIABLE = re.compile(r"(?:(?<=self \. )|(?<=this -> )|(?<!\S)(?<![.:>] ))[A-Za-z_]\w*(?!\S)(?! \()")
@@ -269,7 +270,7 @@ def _are_versions(old: Statement, new: Statement) -> bool:
 
 def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     """Return whether other lines already report the replacement of a literal."""
-    old, new = (text.strip("\"'") for text in (item.old, item.new))
+    old, new = (_F_STRING.sub("", text).strip("\"'") for text in (item.old, item.new))
     if _is_declared_type(item, reported):
         return True
     for line in reported:
@@ -287,7 +288,7 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace,
     # or an option with its dashes, without its letter
     names = [max(_OPTION_SEPARATOR.split(text), key=len) for text in (old, new)]
-    patterns = [re.compile(rf"'(?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?'") for name in names]
+    patterns = [re.compile(rf"['\"](?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?['\"]") for name in names]
     return _is_text(item.new) and all(any(pattern.search(line) for line in reported) for pattern in patterns)
 
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_statements import is_output, read_cpp_blocks
+from linkwright.review.sources.effective_statements import list_effective_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.python_statements import get_blocks, list_called_names
@@ -104,7 +105,7 @@ def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
 
 def _make_python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
     """Yield the statements of a block in depth-first order."""
-    for node in body:
+    for node in list_effective_statements(body):
         if is_skipped(node):
             continue
         yield _make_python_part(node, indent)

@@ -23,6 +23,7 @@ from linkwright.review.sources.details import (
     compare_details,
     find_required_reason,
     format_added_names,
+    format_computed,
     format_name,
     format_names,
     format_rename,
@@ -39,7 +40,7 @@ from linkwright.review.sources.hardware_interfaces import find_description_witho
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
-from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern, lists_names
+from linkwright.review.sources.name_patterns import ends_with_name, extract_pattern, lists_names
 from linkwright.review.sources.names import (
     DYNAMIC_SUFFIX,
     PYTHON_SUFFIX,
@@ -324,12 +325,17 @@ class _SourcePair(PairedNames):
         paths = self.file.path, self.file.old_path or self.file.path
         return has_only_in_other_nodes(item, self.new, self.old, paths)
 
+    def _is_unreachable(self) -> bool:
+        """Return whether nothing starts or imports the source, in each version that has it."""
+        sides = ((self.old, self.file.old_path), (self.new, self.file.new_path))
+        return all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path)
+
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
         is_used = items[0].kind in (*_DECLARED_KINDS, NameKind.IMPORT)
-        if not is_used and is_unreachable(self.old.version, self.old.find_package(path), path):
+        if not is_used and self._is_unreachable():
             return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]
@@ -397,16 +403,14 @@ class _SourcePair(PairedNames):
                 added_expressions.remove(other)
                 yield from self._compare_patterns(item, other)
         for item, other in take_pairs(removed, added_expressions):
-            text = phrase(
-                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
-            )
+            text = format_computed(item, other.name, new_names.choices.get(other.name, ()))
             default = new_names.find_default(other)
             if default is not None:
                 text = format_given(item, default)
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             if default is not None and not default.name:
                 reason = self._find_lost_reason(item, old_names)
-            if reason is None and not can_make(other.name, item.name) and not self._is_same_name(item, other):
+            if reason is None and not new_names.can_give(other, item.name) and not self._is_same_name(item, other):
                 reason = self._find_removal_reason([item], old_names)
             yield self.make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
@@ -465,7 +469,8 @@ class _SourcePair(PairedNames):
             added.remove(new)
         names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
         text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
-        lost = [old for old, new in pairs if not can_make(new.name, old.name) and not self._is_same_name(old, new)]
+        new_names = self.new.get_names(self.file.new_path)
+        lost = [it for it, new in pairs if not new_names.can_give(new, it.name) and not self._is_same_name(it, new)]
         reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
         reason = reason or next(filter(None, (self._find_argument_reason(old, new) for old, new in pairs)), None)
         yield self.make_change(text, pairs[0][1].span, self.new, reason)

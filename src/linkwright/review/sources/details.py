@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import quote_first
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.review.breaking import quote_first, quoted
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
@@ -59,6 +59,15 @@ def _format_added_name(item: SourceName) -> str:
 def format_rename(old: SourceName, new: SourceName) -> Phrase:
     """Return the change of a name."""
     return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
+
+
+def format_computed(item: SourceName, expression: str, choices: Sequence[str]) -> Phrase:
+    """Return the change of a name that an expression computes now, with the texts that the expression may have."""
+    values = {"kind": item.kind.title, "name": format_name(item), "new": expression}
+    if not choices:
+        return phrase("{kind} {name} has a computed name now: {new}", **values)
+    texts = joined(map(quoted, choices), last=" or ")
+    return phrase("{kind} {name} has a computed name now: {new}, which is {texts}", **values, texts=texts)
 
 
 def is_rename(sentence: Phrase) -> bool:

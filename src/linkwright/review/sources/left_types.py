@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
@@ -15,13 +16,18 @@ from linkwright.review.sources.unchanged_sources import get_counterpart, is_same
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
+_COMMON_NAME = re.compile(
+    r"cmd_vel\w*|odom\w*|scan\w*|imu\w*|fix|map|joy|goal|goal_pose|initialpose|battery\w*|joint_\w+|"
+    r"(?:\w+_)?(?:image|points|cloud|pose|camera_info)(?:_\w+)?|status|state|reset|enable|start|stop|clock|tf|tf_static"
+)
+"""The last words of the names that programs of other repositories often offer, too."""
 
 
 def find_left_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the sources whose counterpart has another type now, each with a change.
 
-    In other packages, only names with a slash at the start are compared. A name that another source still has with the
-    old type is left out.
+    In other packages, relative names are compared only if no third package offers the name, and not common ones.
+    A name that another source still has with the old type is left out.
     """
     sources = _Sources(versions.new)
     for file in changed_files:
@@ -65,14 +71,26 @@ class _Sources:
             path: the path of the source that had the name.
         """
         package = self._version.package_of(path)
+        is_common = item.name.startswith("~") or _COMMON_NAME.fullmatch(item.name.rpartition("/")[2]) is not None
+        is_shared = not is_common and self._has_one_owner(item, package)
         for user, text in self._texts.items():
             if item.name.lstrip("/") not in text or item.type.rpartition("/")[2].rpartition("::")[2] not in text:
                 continue
             is_own = self._version.package_of(user) == package
             for other in self._read(user).of_kind(kind):
                 is_same = item.name == other.name and item.name.startswith("/")
-                if (is_same or (is_own and is_same_topic(item, other))) and other.has_type_of(item):
+                if (is_same or ((is_own or is_shared) and is_same_topic(item, other))) and other.has_type_of(item):
                     yield user, other
+
+    def _has_one_owner(self, item: SourceName, package: str | None) -> bool:
+        """Return whether no source of another package has a name of the same kind."""
+        name = item.name.lstrip("/")
+        return not any(
+            is_same_topic(item, other)
+            for path, text in self._texts.items()
+            if name in text and self._version.package_of(path) != package
+            for other in self._read(path).of_kind(item.kind)
+        )
 
     @property
     def _texts(self) -> Mapping[str, str]:

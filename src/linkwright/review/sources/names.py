@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.review.sources.name_patterns import can_make
 
 HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c", *HEADER_SUFFIXES)
@@ -225,6 +226,8 @@ class SourceNames:
         typed_names: the literal names with a type, one for each place.
         expressions: the names that are expressions, whose values are unknown.
         defaults: the names that expressions have by default, by the text of the expression.
+        choices: the texts that expressions may have as their values, by the text of the expression. Expressions with
+            unknown values are left out.
         counts: the number of places with a literal name, by kind and name.
         conditional_lines: the branches of ``if`` statements.
         default_names: the names that parameters give by default.
@@ -274,6 +277,7 @@ class SourceNames:
     typed_names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
     defaults: dict[str, str] = field(default_factory=dict)
+    choices: dict[str, Sequence[str]] = field(default_factory=dict)
     counts: Counter[tuple[NameKind, str]] = field(default_factory=Counter)
     conditional_lines: list[ConditionalLines] = field(default_factory=list)
     default_names: set[DefaultName] = field(default_factory=set)
@@ -347,6 +351,14 @@ class SourceNames:
         default = self.defaults.get(item.name)
         found = (known for known in self.default_names if (known.kind, known.name) == (item.kind, default))
         return min(found, key=lambda known: known.parameter, default=None)
+
+    def can_give(self, expression: SourceName, name: str) -> bool:
+        """Return whether an expression for a name may have a text as its value; True if that is not certain.
+
+        Texts that differ only in an initial ``/`` are equal.
+        """
+        choices = [text.lstrip("/") for text in self.choices.get(expression.name, ())]
+        return name.lstrip("/") in choices if choices else can_make(expression.name, name)
 
     def has_default(self, item: SourceName) -> bool:
         """Return whether a parameter gives a frame by default."""

@@ -40,6 +40,7 @@ from linkwright.review.sources.signatures import (
     read_method_signatures,
     read_signature,
 )
+from linkwright.review.sources.uncalled_functions import find_uncalled_functions
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _NAME_FIRST_CLASSES = {
@@ -142,7 +143,7 @@ def _find_enumeration_constants(python: PythonFile, node: ast.expr) -> Iterator[
             yield value
 
 
-def parse_source(source: SourceText) -> PythonFile:
+def parse_source(source: SourceText) -> PythonSource:
     """Return a parsed Python 3 or Python 2 source.
 
     Raises:
@@ -196,7 +197,7 @@ class _Reader:
         names: the collection to which the names are added.
     """
 
-    def __init__(self, python: PythonFile, names: SourceNames) -> None:
+    def __init__(self, python: PythonSource, names: SourceNames) -> None:
         self._python = python
         self._names = names
         self._types = PythonTypes(python.tree)
@@ -208,7 +209,9 @@ class _Reader:
     def read(self) -> None:
         """Add the names."""
         tree = self._python.tree
+        uncalled = {id(node) for function in find_uncalled_functions(tree) for node in ast.walk(function)}
         nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Call, ast.Assign, ast.For))]
+        nodes = [node for node in nodes if id(node) not in uncalled]
         for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)):
             if isinstance(node, ast.Assign):
                 self._read_assignment(node)
@@ -559,6 +562,9 @@ class _Reader:
         text = " ".join(ast.unparse(node).split())
         text = text if '"' in text else text.replace("'", '"')  # reports quote it by '
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node), full_type=full_type))
+        texts = self._python.find_texts(node)
+        if texts:
+            self._names.choices[text] = texts
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:
             self._names.add_default(kind, text, *parameter)

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
+from collections.abc import Sequence
 from functools import cached_property
+from itertools import product
 from pathlib import Path
+from typing import TypeGuard
 
 from linkwright.packages.readers.python_values import UNKNOWN, PythonFile, Value
 from linkwright.review.sources.message_constants import read_imported_message_constants
 from linkwright.review.sources.shared_constants import read_imported_constants
 
 _MAX_DEPTH = 10
+_MAX_TEXTS = 8
+"""The maximum number of values that an expression may have."""
 _PLAIN_DECORATORS = frozenset({"property", "staticmethod", "classmethod"})
 
 
@@ -68,6 +74,52 @@ class PythonSource(PythonFile):
         result = self._find_result(node)
         return super().value(node, depth) if result is None else self.value(result, depth + 1)
 
+    def find_texts(self, node: ast.expr, depth: int = 0) -> Sequence[str]:
+        """Return all texts that an expression may have as its value; nothing if they are not certain.
+
+        Variables may have several values, such as one in each branch of an ``if`` statement.
+        """
+        text = self.text(node)
+        if text is not None or depth > _MAX_DEPTH:
+            return () if text is None else (text,)
+        if isinstance(node, ast.Name):
+            return self._join_choices(self._choices.get(node.id, ()), depth)
+        if isinstance(node, ast.IfExp):
+            return self._join_choices([node.body, node.orelse], depth)
+        parts: Sequence[ast.expr] = ()
+        if isinstance(node, ast.JoinedStr):
+            parts = [piece.value if _is_plain_piece(piece) else piece for piece in node.values]
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            parts = [node.left, node.right]
+        texts = [self.find_texts(part, depth + 1) for part in parts]
+        found = ["".join(combination) for combination in product(*texts)] if parts else []
+        return list(dict.fromkeys(found)) if len(found) <= _MAX_TEXTS else ()
+
+    def _join_choices(self, nodes: Sequence[ast.expr], depth: int) -> Sequence[str]:
+        found = [self.find_texts(node, depth + 1) for node in nodes]
+        texts = list(dict.fromkeys(text for texts in found for text in texts))
+        return texts if all(found) and len(texts) <= _MAX_TEXTS else ()
+
+    @cached_property
+    def _choices(self) -> dict[str, list[ast.expr]]:
+        """The expressions that are assigned to variables, without variables that get a value in another way."""
+        choices: dict[str, list[ast.expr]] = {}
+        bound: Counter[str] = Counter()
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Assign):
+                for target in node.targets:
+                    if isinstance(target, ast.Name):
+                        choices.setdefault(target.id, []).append(node.value)
+            if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+                bound[node.id] += 1
+            elif isinstance(node, ast.arg):
+                bound[node.arg] += 1
+            elif isinstance(node, ast.alias):
+                bound[node.asname or node.name] += 1
+            elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+                bound[node.target.id] += 1
+        return {name: values for name, values in choices.items() if bound[name] == len(values)}
+
     def _find_result(self, node: ast.expr | None) -> ast.expr | None:
         """Return the result of a function without arguments that only returns an expression, or None for others.
 
@@ -97,3 +149,8 @@ class PythonSource(PythonFile):
     def _overrides(self, name: str) -> bool:
         """Return whether the source assigns the name of a function."""
         return self._assignments.get(name) is not None or name in self._attributes
+
+
+def _is_plain_piece(piece: ast.expr) -> TypeGuard[ast.FormattedValue]:
+    """Return whether a piece of an f-string is an expression without a format or conversion."""
+    return isinstance(piece, ast.FormattedValue) and piece.conversion == -1 and piece.format_spec is None

@@ -85,9 +85,49 @@ def _find_in_class(path: Path, tree: ast.Module, name: str, depth: int = 0) -> l
     if found is None:
         return []
     file, module, definition = found
-    if _find_constructor(definition) is not None or len(definition.bases) != 1 or depth >= _MAX_DEPTH:
+    if len(definition.bases) != 1 or depth >= _MAX_DEPTH:
         return list(find_wrapped_names(definition))
-    return _find_in_class(file, module, ast.unparse(definition.bases[0]), depth + 1)
+    base = ast.unparse(definition.bases[0])
+    if _find_constructor(definition) is None:
+        return _find_in_class(file, module, base, depth + 1)
+    found_base = find_class(file, module, base)
+    return list(find_wrapped_names(definition, None if found_base is None else found_base[2]))
+
+
+def _find_inherited_members(
+    base: ast.ClassDef, constructor: ast.FunctionDef, places: Mapping[str, tuple[int, str]]
+) -> dict[str, tuple[int, str]]:
+    """Return the members that the constructor of a base class sets to arguments which a constructor passes on.
+
+    Args:
+        base: the base class.
+        constructor: the constructor that calls the one of the base class.
+        places: the indexes of the parameters of the calling constructor.
+    """
+    own = _find_constructor(base)
+    calls = [
+        node
+        for node in ast.walk(constructor)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == _CONSTRUCTOR
+    ]
+    if own is None or len(calls) != 1:
+        return {}
+    is_explicit = bool(calls[0].args) and ast.unparse(calls[0].args[0]) == _SELF  # ``Base.__init__(self, ...)``
+    members = {}
+    for member, (index, name) in _find_members(base, own, _find_places(own)).items():
+        argument = get_argument(calls[0], index + is_explicit if index >= 0 else index, name)
+        if isinstance(argument, ast.Name) and argument.id in places:
+            members[member] = places[argument.id]
+    return members
+
+
+def _find_places(constructor: ast.FunctionDef) -> dict[str, tuple[int, str]]:
+    """Return the index and the name of each parameter that a constructor does not assign, by its name."""
+    parameters = constructor.args
+    positional = [*parameters.posonlyargs, *parameters.args][1:]
+    indexes = {argument.arg: index for index, argument in enumerate(positional)}
+    indexes |= {argument.arg: -1 for argument in parameters.kwonlyargs}
+    return {name: (index, name) for name, index in indexes.items() if not _is_assigned(constructor, name)}
 
 
 def _find_constructor(definition: ast.ClassDef) -> ast.FunctionDef | None:
@@ -95,27 +135,35 @@ def _find_constructor(definition: ast.ClassDef) -> ast.FunctionDef | None:
     return next((method for method in methods if method.name == _CONSTRUCTOR), None)
 
 
-def find_wrapped_names(definition: ast.ClassDef) -> Iterator[WrappedName]:
-    """Yield the topics and services that a class makes with names that its constructor gets."""
+def find_wrapped_names(definition: ast.ClassDef, base: ast.ClassDef | None = None) -> Iterator[WrappedName]:
+    """Yield the topics and services that a class makes with names that its constructor gets.
+
+    Args:
+        definition: the class.
+        base: the base class, to whose constructor that of the class may pass the names; None if it is unknown.
+    """
     constructor = _find_constructor(definition)
     if constructor is None:
         return
     parameters = constructor.args
     positional = [*parameters.posonlyargs, *parameters.args][1:]
-    indexes = {argument.arg: index for index, argument in enumerate(positional)}
-    indexes |= {argument.arg: -1 for argument in parameters.kwonlyargs}
     defaults = {
         argument.arg: value
         for argument, value in zip(reversed(positional), reversed(parameters.defaults), strict=False)
     }
-    places = {name: (index, name) for name, index in indexes.items() if not _is_assigned(constructor, name)}
+    places = _find_places(constructor)
     members = _find_members(definition, constructor, places)
+    inherited = {} if base is None else _find_inherited_members(base, constructor, places)
+    stored = _list_stored_members(definition)
+    members |= {member: place for member, place in inherited.items() if member not in stored}
+    stored = _list_stored_members(constructor)  # other methods run later
+    first_members = members | {member: place for member, place in inherited.items() if member not in stored}
     constructor_nodes = {id(node) for node in ast.walk(constructor)}
 
     def find_place(node: ast.expr | None, *, is_inside: bool) -> tuple[int, str] | None:
         if isinstance(node, ast.Name) and is_inside:
             return places.get(node.id)
-        return None if node is None else members.get(ast.unparse(node))
+        return None if node is None else (first_members if is_inside else members).get(ast.unparse(node))
 
     for call in (node for node in ast.walk(definition) if isinstance(node, ast.Call)):
         made = _read_creation(call)
@@ -138,11 +186,7 @@ def _find_members(
     definition: ast.ClassDef, constructor: ast.FunctionDef, places: Mapping[str, tuple[int, str]]
 ) -> dict[str, tuple[int, str]]:
     """Return the members, such as ``self.topic``, that only get an argument of the constructor."""
-    stored = [
-        ast.unparse(node)
-        for node in ast.walk(definition)
-        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
-    ]
+    stored = _list_stored_members(definition)
     members: dict[str, tuple[int, str]] = {}
     for node in ast.walk(constructor):
         targets = (
@@ -155,6 +199,12 @@ def _find_members(
             if text.startswith(f"{_SELF}.") and stored.count(text) == 1 and place is not None:
                 members[text] = place
     return members
+
+
+def _list_stored_members(definition: ast.ClassDef | ast.FunctionDef) -> list[str]:
+    """Return the attributes that get a value in a class or method, as often as they do."""
+    nodes = (node for node in ast.walk(definition) if isinstance(node, ast.Attribute))
+    return [ast.unparse(node) for node in nodes if isinstance(node.ctx, ast.Store)]
 
 
 def _read_creation(

@@ -80,7 +80,7 @@ def _read_module_constants(path: Path, module: str, level: int) -> Mapping[str, 
 def find_own_module(path: Path, module: str, level: int) -> Path | None:
     """Return the file of a module of the same package, or None for a module outside of it.
 
-    Targets of links and ``..`` that leave the package are outside.
+    Targets of links that leave the folder of the package, and ``..`` that leaves the package, are outside.
 
     Args:
         path: the path of the source that imports the module.
@@ -98,8 +98,16 @@ def find_own_module(path: Path, module: str, level: int) -> Path | None:
         folders = [root / part for part in ("", "src") if (root / part / parts[0] / "__init__.py").is_file()]
         bases += [folder.joinpath(*parts) for folder in folders]
     ends = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}") for base_path in bases if parts)
-    files = (file.resolve() for file in (*ends, *(base_path / _PACKAGE_FILE for base_path in bases)))
-    return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
+    files = ((file, file.resolve()) for file in (*ends, *(base_path / _PACKAGE_FILE for base_path in bases)))
+    return next(
+        (
+            target
+            for file, target in files
+            if target.is_relative_to(base) or (file.is_relative_to(root) and target.is_relative_to(base.parent))
+            if target.is_file()
+        ),
+        None,
+    )
 
 
 @cached_in_review(maxsize=256)

@@ -56,12 +56,14 @@ class _Difference(NamedTuple):
         new: the new statement.
         body: the first statement of a condition that only one version has.
         number: the number of equal differences in the function.
+        left: the number of equal statements that the new version still has.
     """
 
     old: FunctionStatement | None
     new: FunctionStatement | None
     body: FunctionStatement | None = None
     number: int = 1
+    left: int = 0
 
     @property
     def texts(self) -> tuple[str | None, ...]:
@@ -221,7 +223,9 @@ def _compare(
         for difference in _with_bodies([*_pair(before, after)]):
             if difference.statement.kind is StatementKind.REPORTED or sides.is_left_out(difference, name, lines):
                 continue
-            yield difference
+            is_removed = difference.new is None and difference.body is None
+            left = texts[1].count(read_text(difference.statement.part)) if is_removed else 0
+            yield difference._replace(left=left)
 
 
 def _merge_equal(differences: Iterable[_Difference]) -> list[_Difference]:
@@ -348,4 +352,6 @@ def _describe(difference: _Difference) -> Phrase:
     if difference.body is not None:
         text = f"{text}: {difference.body.text}"
     items = f"`{shorten(text, _MAX_CHARACTERS)}`"
+    if new is None and difference.left and difference.number == 1:
+        return phrase("one of {count} {items} removed", count=difference.left + 1, items=items)
     return phrase("{items} removed", items=items) if new is None else phrase("{items} added", items=items)

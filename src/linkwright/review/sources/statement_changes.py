@@ -15,15 +15,17 @@ from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
+from linkwright.review.sources.command_arguments import find_read_arguments
 from linkwright.review.sources.deferred_imports import find_deferred_imports
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.lost_message_frames import find_lost_message_frames
 from linkwright.review.sources.moved_calls import find_moved_calls
 from linkwright.review.sources.moved_code import without_functions, without_statements
-from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
+from linkwright.review.sources.opened_files import describe_opened_files
 from linkwright.review.sources.opposite_signs import find_opposite_reason
 from linkwright.review.sources.reading import try_parse_versions
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
@@ -51,6 +53,7 @@ def compare_statements(
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file, reported)
         changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_arguments(old, new, file.old_path, file.new_path)
         changes += _find_moved_calls(old, new, file.old_path, file.new_path)
         changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
@@ -64,6 +67,8 @@ def compare_statements(
     elif file.new_path is not None:
         changes += _compare_commands(old, new, file, changes)
         changes += _find_added_code(old, new, file.new_path, changes)
+        if not changes and file.new_path.endswith(PYTHON_SUFFIX):
+            changes += _find_opened_files(new, file.new_path)
     return changes[len(reported) :]
 
 
@@ -148,6 +153,15 @@ def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_
         yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
 
 
+def _find_arguments(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the argument of the command line that a program in Python newly needs."""
+    if new_path.endswith(PYTHON_SUFFIX):
+        parsed = try_parse_versions(old.version.file(old_path), new.version.file(new_path))
+        for item in find_read_arguments(*parsed) if parsed is not None else ():
+            location = Location(new_path, item.span.line, item.span.column)
+            yield Change(item.sentence, Effect.BREAKING, item.reason, location)
+
+
 def _find_moved_calls(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
     """Yield the calls that send something and that move into a condition, or out of one."""
     before, after = old.codes.get(old_path), new.codes.get(new_path)
@@ -205,6 +219,13 @@ def _compare_code(
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
         yield Change(change.text, location=location, is_code=True)
+
+
+def _find_opened_files(new: ChangedSources, path: str) -> Iterator[Change]:
+    """Yield the files that an added script reads and writes of which no other line tells anything."""
+    found = describe_opened_files(new.version.file(path))
+    if found is not None:
+        yield Change(found[0], location=Location(path, found[1].line, found[1].column))
 
 
 def _find_added_code(

@@ -28,6 +28,8 @@ _PYTHON_2_BUILTINS = frozenset(
 """The builtins of Python 2, and builtins that other programs add."""
 _DYNAMIC_NAMES = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
 """The names with which a source can define further names."""
+_OWN_OBJECT = "self"
+"""The name of a parameter that no module has as a name of its own."""
 _INTERFACES = re.compile(r"\w+\.(?:msg|srv|action)")
 """A module with the types of a package."""
 
@@ -60,8 +62,10 @@ def find_undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
     uses = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
     names = {node.id for node in uses} - bound_names - set(dir(builtins)) - _PYTHON_2_BUILTINS
     has_star, brings_types = _read_star_imports(tree)
-    if (has_star and not brings_types) or not _DYNAMIC_NAMES.isdisjoint(node.id for node in uses):
+    if not _DYNAMIC_NAMES.isdisjoint(node.id for node in uses):
         return {}
+    if has_star and not brings_types:
+        names &= {_OWN_OBJECT}
     names = {name for name in names if not name.startswith("__") and not (has_star and name[:1].isupper())}
     skipped_ids = {id(inner) for part in _find_uncertain_parts(tree) for inner in ast.walk(part)} if names else set()
     first_uses: dict[str, ast.Name] = {}

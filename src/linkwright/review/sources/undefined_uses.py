@@ -10,11 +10,14 @@ from linkwright.review.sources.names import OwnUse, SourceNames
 
 
 class UndefinedUse(NamedTuple):
-    """A use of an undefined name, with the text of its line, its location and the reason why it is breaking."""
+    """A use of an undefined name, with the text of its line, its location and the reason why it is breaking.
+
+    The reason is None in an added source, which no program used before.
+    """
 
     text: Phrase
     span: Span
-    reason: Phrase
+    reason: Phrase | None
 
 
 def find_undefined_uses(
@@ -30,12 +33,13 @@ def find_undefined_uses(
         is_defined: whether another source may define an attribute that a class uses, by its use and name.
         is_added: whether only the new version has the source.
     """
-    for name, span in new.undefined_names.items() if not is_added else ():
+    for name, span in new.undefined_names.items():
         reason = phrase("the code that uses the name fails")
         if name in old.bound_names:
             yield UndefinedUse(phrase("uses '{name}', which it no longer defines or imports", name=name), span, reason)
-        elif old.bound_names and not old.undefined_names:
-            yield UndefinedUse(phrase("uses '{name}', which nothing defines", name=name), span, reason)
+        elif is_added or (old.bound_names and not old.undefined_names):
+            text = phrase("uses '{name}', which nothing defines", name=name)
+            yield UndefinedUse(text, span, None if is_added else reason)
     for name, use in new.undefined_attributes.items() if not is_added and old.bound_names else ():
         is_lost = name in old.attributes
         is_certain = is_lost or not (name.startswith("_") or old.undefined_attributes)  # a base class may have it

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import LinkwrightError, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.messages import catalog
+from linkwright.messages.definitions.interfaces import list_structures
+from linkwright.messages.definitions.library import TrustedMessages, parse_source
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
@@ -25,6 +29,11 @@ _METHODS = frozenset(
     }
 )
 """The public names that messages have in Python besides their fields and constants, in ROS 1 and ROS 2."""
+_COMMON_PACKAGES = ("geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs")
+"""The packages of ROS 2 whose interfaces Linkwright knows, and hardly any distribution changes."""
+_PARTS = {"msg": ("",), "srv": ("request ", "response ")}
+"""The prefixes of the field names of a known interface, by its kind."""
+_ROS1 = re.compile(r"\brospy\b")
 
 
 class _OtherNames(frozenset[str]):
@@ -67,13 +76,21 @@ def find_missing_fields(versions: Versions, changed_files: Sequence[ChangedFile]
 
 
 def _find_uses(text: str, interfaces: Sequence[_Interface]) -> dict[tuple[str, str, str], InterfaceUse]:
-    """Return the first use of each field that an interface does not have."""
+    """Return the first use of each field that an interface does not have.
+
+    Known interfaces of ROS 2 are left out in sources of ROS 1.
+    """
     named = [item for item in interfaces if item.package in text and item.name in text]
-    return {use.key: use for use in reversed([use for item in named for use in find_python_uses(text, item)])}
+    named = [item for item in named if item.package not in _COMMON_PACKAGES or not _ROS1.search(text)]
+    uses = sorted((use for item in named for use in find_python_uses(text, item)), key=lambda use: use.line)
+    return {use.key: use for use in sorted({use.key: use for use in reversed(uses)}.values(), key=lambda use: use.line)}
 
 
 def _read_interfaces(version: Version, files: Sequence[ChangedFile]) -> list[_Interface]:
-    """Return the interfaces of the repository that the texts of sources may name, if only one file defines each."""
+    """Return the interfaces that the texts of sources may name, if only one file of the repository defines each.
+
+    Those of `_COMMON_PACKAGES` are known.
+    """
     paths = (file.old_path if version.is_old else file.new_path for file in files)
     texts = [version.text(path) for path in paths if path]
     found: dict[tuple[str, str], list[_Interface]] = {}
@@ -88,7 +105,30 @@ def _read_interfaces(version: Version, files: Sequence[ChangedFile]) -> list[_In
         names = {part: list_names(structure) for part, structure in structures.items()}
         kind = PurePosixPath(path).suffix.removeprefix(".")
         found.setdefault((package, name), []).append(_Interface(package, kind, name, names))
-    return [items[0] for items in found.values() if len(items) == 1]
+    own = [items[0] for items in found.values() if len(items) == 1]
+    packages = {package for package, _ in found}
+    return [*own, *_read_common_interfaces([package for package in _COMMON_PACKAGES if package not in packages], texts)]
+
+
+def _read_common_interfaces(packages: Sequence[str], texts: Sequence[str]) -> Iterator[_Interface]:
+    """Yield the interfaces of known packages that the texts of sources may name.
+
+    An interface has the fields of all distributions.
+    """
+    for package in packages:
+        users = [text for text in texts if package in text]
+        names: dict[tuple[str, str], dict[str, frozenset[str]]] = {}
+        for heading, definition in catalog.read_all_texts(package) if users else ():
+            kind, _, name = heading.partition("/")
+            if kind not in _PARTS or not any(name in text for text in users):
+                continue
+            source = SourceText(heading, definition)
+            structures = list_structures(parse_source(source, f"{package}/{heading}", TrustedMessages()))
+            parts = names.setdefault((kind, name), {})
+            for part, structure in zip(_PARTS[kind], structures, strict=True):
+                parts[part] = parts.get(part, frozenset()) | list_names(structure)
+        for (kind, name), parts in names.items():
+            yield _Interface(package, kind, name, parts)
 
 
 def _make_change(path: str, use: InterfaceUse) -> Change:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
+from linkwright.review.launches.helper_failures import find_helper_failures
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
@@ -75,5 +76,5 @@ SEARCHES: tuple[Search, ...] = (
     ),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
-    *(find_unknown_joints, find_new_keys, find_missing_headers),
+    *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures),
 )
