@@ -167,6 +167,20 @@ def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(review_r
     assert review_reasons(old, new) == {expected: CAMERA_STOPS}
 
 
+def test_reason_for_several_removed_arguments_names_all_programs_that_stop(repository, compare):
+    names = ("arm", "base", "camera", "door")
+    arguments = "".join(f'<arg name="{name}" default="false"/>' for name in names)
+    nodes = "".join(f'<node pkg="arm" type="{name}.py" name="{name}" if="$(arg {name})"/>' for name in names)
+    passed = "".join(f'<arg name="{name}" value="true"/>' for name in names)
+    include = '<launch><include file="$(dirname)/part.launch">{}</include></launch>\n'
+    part = {"arm/launch/part.launch": f"<launch>{arguments}{nodes}</launch>\n"}
+    repository.commit({"arm/launch/arm.launch": include.format(passed), **part})
+    repository.write({"arm/launch/arm.launch": include.format("")})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    programs = ", ".join(f"'arm/{name}.py'" for name in names)
+    assert str(change.reason) == f"by default, {programs} no longer start"
+
+
 @pytest.mark.parametrize(("line", "reason"), [(SAFETY, "by default, it no longer starts"), (MODEL_INCLUDE, None)])
 def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(review_reasons, line, reason):
     assert list(review_reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
