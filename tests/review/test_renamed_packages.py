@@ -193,7 +193,6 @@ def test_package_with_a_short_manifest_is_paired_by_its_moved_files(repository, 
 def test_package_with_the_name_of_its_project_is_repaired(repository, compare, project, build_type, is_breaking):
     export = f"<export><build_type>{build_type}</build_type></export></package>"
     manifest = PACKAGE_XML.replace("</package>", export)
-    manifest = manifest.replace("ament_cmake</buildtool", f"{build_type}</buildtool")
     build = f"cmake_minimum_required(VERSION 3.8)\nproject({project})\nament_package()\n"
     repository.commit({"package.xml": manifest.replace("arm_description", "old"), "CMakeLists.txt": build})
     repository.write({"package.xml": manifest.replace("arm_description", "arm")})

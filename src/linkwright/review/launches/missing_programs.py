@@ -209,6 +209,14 @@ def lacks_program(version: Version, entry: Entry) -> bool:
     return owner.lacks(name) and (name.endswith(_SCRIPT_SUFFIXES) or not owner.may_compute_names)
 
 
+def lacks_executable(version: Version, entry: Entry) -> bool:
+    """Return whether a launch action starts a program that its package lacks, or a script that is not executable."""
+    package, _, name = entry.name.partition("/")
+    owner = find_packages(version).get(package) if entry.kind in PROGRAM_KINDS else None
+    is_unexecutable = owner is not None and name.endswith(_SCRIPT_SUFFIXES) and owner.has_only_unexecutable(name)
+    return is_unexecutable or lacks_program(version, entry)
+
+
 def lacks_included_file(version: Version, entry: Entry) -> bool:
     """Return whether a launch action includes a file that its package in the repository certainly does not install."""
     match = _FILE_OF_PACKAGE.fullmatch(entry.name) if entry.kind == "include" else None
