@@ -456,7 +456,7 @@ def _format_setting(setting: _Setting) -> str:
 def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
     """Return one reason for a group of settings, with all names that it breaks."""
     reasons = [setting.reason for setting in group if setting.reason is not None]
-    stopped = dict.fromkeys(names for reason in reasons if (names := _find_stopped_programs(reason)) is not None)
+    stopped = dict.fromkeys(filter(None, map(_find_stopped_programs, reasons)))
     if len(stopped) > 1:
         return phrase("by default, {entries} no longer start", entries=joined(stopped))
     if len(set(map(str, reasons))) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
