@@ -62,6 +62,33 @@ def test_a_topic_that_a_costmap_no_longer_reads_is_breaking(repository, compare,
     assert [None if change.reason is None else str(change.reason) for change in changes] == reasons
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("[static_layer, obstacle_layer]", "[obstacle_layer]", "the costmap lacks the layer 'static_layer'"),
+        (
+            "[static_layer, obstacle_layer]",
+            "[voxel_layer]",
+            "the costmap lacks the layers 'obstacle_layer', 'static_layer'",
+        ),
+        ("      plugins: [static_layer, obstacle_layer]\n", "", "the costmap lacks the layers"),
+    ],
+)
+def test_a_costmap_that_loses_a_layer_is_told(repository, compare, old, new, reason):
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: NAV2})
+    repository.write({PATH: NAV2.replace(old, new)})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.reason).startswith(reason)
+
+
+def test_a_server_that_loses_a_plugin_breaks_programs_that_name_it(repository, compare):
+    text = "planner_server:\n  ros__parameters:\n    planner_plugins: [direct, careful]\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: text})
+    repository.write({PATH: text.replace("direct, ", "")})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.reason) == "programs that name the plugin 'direct' do not find it"
+
+
 def test_a_renamed_source_with_the_same_topic_is_not_breaking(repository, compare):
     repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: ROS1})
     repository.write({PATH: ROS1.replace("laser", "front")})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
 BUILD = """cmake_minimum_required(VERSION 3.8)
@@ -137,3 +138,20 @@ def test_an_include_of_a_missing_file_in_ros_1_is_repaired(package, compare):
     package.write({ROS1_PATH: text.format("part.launch")})
     told = sentences(subject(compare(package), ROS1_PATH))
     assert any("has no file 'launch/includes/part.launch.xml'" in line for line in told)
+
+
+@pytest.mark.parametrize("old_script", [None, "arm_description/src/parts/check.py"])
+@pytest.mark.parametrize("new_script", ["arm_description/src/check.py", None])
+def test_a_node_of_ros_1_whose_program_exists_now_is_told(package, compare, old_script, new_script):
+    manifest = PACKAGE_XML.replace("</package>", "<buildtool_depend>catkin</buildtool_depend></package>")
+    text = '<launch>\n  <node pkg="arm_description" type="check.py" name="check"/>\n</launch>\n'
+    build = "cmake_minimum_required(VERSION 3.8)\nproject(arm_description)\nfind_package(catkin REQUIRED)\n"
+    files = {"arm_description/package.xml": manifest, ROS1_PATH: text, "arm_description/CMakeLists.txt": build}
+    package.commit(files | ({old_script: "pass\n"} if old_script else {}))
+    package.write({ROS1_PATH: text.replace('name="check"', 'name="check" output="screen"')})
+    if new_script:
+        package.write({new_script: "pass\n"})
+        (package.root / new_script).chmod(0o755)
+    told = sentences(subject(compare(package), ROS1_PATH))
+    repair = "before this change, no executable program 'arm_description/check.py' was found to start"
+    assert (repair in told) == (new_script is not None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import breaking
+from tests.review.conftest import breaking, subject
 
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -227,3 +227,28 @@ def test_a_failure_in_an_else_branch_is_new_under_the_opposite_condition(reposit
     repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + added)})
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == f"the launch file fails if `{condition}`"
+
+
+@pytest.mark.parametrize(
+    ("module", "argument", "is_breaking"),
+    [
+        ("launch_ros.actions", "arguements=['-d']", True),
+        ("launch_ros.actions", "required=True", True),
+        ("launch_ros.actions", "respawn_delay=2.0, emulate_tty=True, ros_arguments=[]", False),
+        ("launch_ros.actions", "node_name='talker'", False),
+        ("own_actions", "arguements=['-d']", False),
+    ],
+)
+def test_an_argument_that_a_class_does_not_have_is_breaking(review_changes, module, argument, is_breaking):
+    text = LAUNCH.replace("launch_ros.actions", module).replace("arguments=[name]", "name=name")
+    _, found_breaking = review_changes("arm.launch.py", text, "name=name", f"name=name, {argument}")
+    expected = f"unknown argument {argument.partition('=')[0]} added"
+    assert any(expected in change for change in found_breaking) is is_breaking
+
+
+def test_an_added_file_with_an_argument_that_a_class_does_not_have_fails(repository, compare):
+    repository.commit({"README.md": "An arm."})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace("arguments=[name]", "argument=[name]")})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch.py").changes
+    assert "unknown argument argument" in str(change.sentence)
+    assert str(change.sentence).endswith("; an action has wrong arguments, so that the file fails")

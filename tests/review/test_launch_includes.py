@@ -167,6 +167,20 @@ def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(review_r
     assert review_reasons(old, new) == {expected: CAMERA_STOPS}
 
 
+def test_reason_for_several_removed_arguments_names_all_programs_that_stop(repository, compare):
+    names = ("arm", "base", "camera", "door")
+    arguments = "".join(f'<arg name="{name}" default="false"/>' for name in names)
+    nodes = "".join(f'<node pkg="arm" type="{name}.py" name="{name}" if="$(arg {name})"/>' for name in names)
+    passed = "".join(f'<arg name="{name}" value="true"/>' for name in names)
+    include = '<launch><include file="$(dirname)/part.launch">{}</include></launch>\n'
+    part = {"arm/launch/part.launch": f"<launch>{arguments}{nodes}</launch>\n"}
+    repository.commit({"arm/launch/arm.launch": include.format(passed), **part})
+    repository.write({"arm/launch/arm.launch": include.format("")})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    programs = ", ".join(f"'arm/{name}.py'" for name in names)
+    assert str(change.reason) == f"by default, {programs} no longer start"
+
+
 @pytest.mark.parametrize(("line", "reason"), [(SAFETY, "by default, it no longer starts"), (MODEL_INCLUDE, None)])
 def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(review_reasons, line, reason):
     assert list(review_reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
@@ -288,3 +302,38 @@ def test_an_include_of_another_file_of_a_package_under_another_condition_replace
     replaced = [change for change in changes if "replaced by" in change]
     assert len(replaced) == (count == 1)
     assert any(change.endswith("condition if $(var plan) removed") for change in changes) == (count == 1)
+
+
+MANAGER = '<node pkg="nav2_lifecycle_manager" exec="lifecycle_manager" name="lifecycle_manager_localization"/>'
+PLANNER = '<node pkg="nav2_planner" exec="planner_server"/>'
+NAV2 = "$(find-pkg-share nav2_bringup)/launch/{}_launch.py"
+
+
+@pytest.mark.parametrize(
+    ("node", "file", "arguments", "is_moved"),
+    [
+        (MANAGER, "bringup", "", True),
+        (MANAGER, "localization", "", True),
+        (MANAGER, "navigation", "", False),
+        (MANAGER, "bringup", '<arg name="slam" value="True"/>', False),
+        (MANAGER, "bringup", '<arg name="namespace" value="robot"/>', False),
+        (MANAGER.replace("_localization", ""), "bringup", "", False),
+        (PLANNER, "bringup", '<arg name="slam" value="True"/>', True),
+        (PLANNER, "localization", "", False),
+    ],
+)
+def test_a_node_moves_to_an_included_file_of_nav2_that_starts_it(repository, compare, node, file, arguments, is_moved):
+    path, name = "arm/launch/arm.launch.xml", NAV2.format(file)
+    include = f'<include file="{name}">{arguments}</include>'
+    repository.commit({path: f"<launch>{node}</launch>", "arm/launch/other.launch.xml": f"<launch>{include}</launch>"})
+    repository.write({path: f"<launch>{include}</launch>"})
+    changes = subject(compare(repository), path).changes
+    told = [change for change in changes if str(change.sentence).endswith(f"moved to {name}")]
+    assert bool(told) is is_moved
+    assert any(change.reason is not None for change in changes) is not is_moved
+
+
+def test_a_node_that_an_included_file_of_nav2_starts_anyway_has_not_moved(review_changes):
+    include = f'<include file="{NAV2.format("bringup")}"/>'
+    changes, _ = review_changes("arm.launch.xml", f"<launch>{include}{PLANNER}</launch>", PLANNER, "")
+    assert changes == ["node 'nav2_planner/planner_server' removed"]

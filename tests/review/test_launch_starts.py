@@ -191,6 +191,26 @@ def test_switch_that_stops_several_actions_names_all_of_them_and_static_transfor
     )
 
 
+@pytest.mark.parametrize(
+    ("old_node", "is_breaking"),
+    [
+        ("", False),
+        ('<node pkg="laser" type="filter" name="filter"/>', True),
+        ('<node pkg="laser" type="old_filter" name="filter" if="$(arg laser)"/>', True),
+    ],
+)
+def test_switch_does_not_stop_a_node_that_the_old_version_does_not_have(repository, compare, old_node, is_breaking):
+    text = '<launch><arg name="laser" default="{}"/>{}</launch>\n'
+    new_node = '<node pkg="laser" type="filter" name="filter" if="$(arg laser)"/>'
+    repository.commit({"arm/launch/arm.launch": text.format("true", old_node)})
+    repository.write({"arm/launch/arm.launch": text.format("false", new_node)})
+    reasons = {
+        str(change.sentence): change.reason for change in subject(compare(repository), "arm/launch/arm.launch").changes
+    }
+    is_told = reasons["argument 'laser': default true -> false"] is not None
+    assert is_told == is_breaking
+
+
 SPAWN = '<node pkg="ros_gz_sim" exec="create" args="-topic robot_description"/>'
 SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
 

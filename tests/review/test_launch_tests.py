@@ -92,3 +92,75 @@ def test_function_with_two_actions_has_unknown_arguments(review_changes):
     )
     _, found = review_changes("arm.launch.py", old, "if True:", "if kind == 'rear':")
     assert not [text for text in found if "condition" in text]
+
+
+SWITCHED = """from distutils.util import strtobool
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def is_set(context, name):
+    \"\"\"Return a switch.\"\"\"
+    value = LaunchConfiguration(name).perform(context)
+    return value.lower() == "true"
+
+
+def is_true(text, expected="true"):
+    return text == expected
+
+
+def repeat(text):
+    return repeat(text)
+
+
+def make_actions(context):
+    def get_switch(name):
+        return LaunchConfiguration(name).perform(context) in ("true", "True")
+
+    switch = LaunchConfiguration("scan").perform(context)
+    is_on = switch.lower() == "true"
+    is_off = not is_on
+    if {test}:
+        return [Node(package="arm", executable="scan")]
+    return []
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("scan", default_value="true"),
+        OpaqueFunction(function=make_actions),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("test", "is_stopped"),
+    [
+        ("is_on", True),
+        ("not is_off", True),
+        ("is_off", False),
+        ("strtobool(switch)", True),
+        ("bool(strtobool(switch))", True),
+        ("not strtobool(switch)", False),
+        ("bool(switch)", False),
+        ("context.launch_configurations.get('scan', 'false') == 'true'", True),
+        ("get_switch('scan')", True),
+        ("not get_switch('scan')", False),
+        ("is_set(context, 'scan')", True),
+        ("is_set(context, name='scan')", True),
+        ("is_set(context, 'other')", False),
+        ("is_true(switch)", True),
+        ("is_true(switch, 'false')", False),
+        ("is_true(str(switch), expected='false') is False", False),
+        ("repeat(switch)", False),
+        ("is_true(text)", False),
+    ],
+)
+def test_switch_behind_a_variable_or_function_stops_a_node(review_changes, test, is_stopped):
+    old = SWITCHED.replace("{test}", test)
+    changes, found = review_changes("arm.launch.py", old, 'default_value="true"', 'default_value="false"')
+    assert changes == ["argument 'scan': default true -> false"]
+    assert found == (changes if is_stopped else [])

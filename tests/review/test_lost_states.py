@@ -32,6 +32,24 @@ def test_initial_state_that_no_longer_exists_is_breaking(package, compare, new, 
     assert (text in breaking(compare(package))) is is_lost
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "reasons"),
+    [
+        ("upper_joint", "base_x", ["MoveIt finds no controller for the joint 'base_x'"]),
+        ("upper_joint", "lower_joint", []),
+        ('<joint name="upper_joint"/>', '<chain base_link="base" tip_link="tip"/>', []),
+        ('<joint name="upper_joint"/>', "", []),
+    ],
+)
+def test_fake_controllers_keep_a_joint_that_another_one_replaces(package, compare, old, new, reasons):
+    joints = "controller_list:\n  - name: fake_arm_controller\n    joints:\n      - upper_joint\n      - lower_joint\n"
+    package.commit({PATH: SRDF % "", "arm_description/config/fake_controllers.yaml": joints})
+    package.write({PATH: (SRDF % "").replace(old, new)})
+    text = "names the joint 'upper_joint', which no group has any more"
+    changes = [change for _, change in compare(package).breaking_changes]
+    assert [str(change.reason) for change in changes if str(change.sentence) == text] == reasons
+
+
 def test_initial_state_that_never_existed_is_not_reported_in_a_moved_package(package, compare):
     settings = "arm_description/config/fake_controllers.yaml"
     package.commit({PATH: SRDF % (STATE % ("rest", 1)), settings: CONTROLLERS})

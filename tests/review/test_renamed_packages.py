@@ -199,6 +199,22 @@ def test_package_with_a_short_manifest_is_paired_by_its_moved_files(repository, 
     assert not any("removed" in sentence for sentence in breaking(result))
 
 
+@pytest.mark.parametrize(
+    ("project", "build_type", "is_breaking"),
+    [("arm", "ament_cmake", False), ("old", "ament_cmake", True), ("arm", "cmake", True)],
+)
+def test_package_with_the_name_of_its_project_is_repaired(repository, compare, project, build_type, is_breaking):
+    export = f"<export><build_type>{build_type}</build_type></export></package>"
+    manifest = PACKAGE_XML.replace("</package>", export)
+    build = f"cmake_minimum_required(VERSION 3.8)\nproject({project})\nament_package()\n"
+    repository.commit({"package.xml": manifest.replace("arm_description", "old"), "CMakeLists.txt": build})
+    repository.write({"package.xml": manifest.replace("arm_description", "arm")})
+    result = compare(repository)
+    renamed = "package 'old' renamed to 'arm'"
+    assert renamed in sentences(subject(result, "package.xml"))
+    assert (renamed in breaking(result)) == is_breaking
+
+
 def test_packages_without_common_files_are_removed_and_added(repository, compare):
     manifest = "<package><name>{0}</name><version>1.0.0</version></package>"
     repository.commit({"old/package.xml": manifest.format("old"), "old/config/a.yaml": "a: {ros__parameters: {x: 1}}"})

@@ -78,3 +78,38 @@ def test_a_project_that_a_file_of_the_repository_installs(repository, compare, n
     repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "", name: "pip install pyserial\n"})
     repository.write({"lamp/a.py": "import serial\n"})
     assert breaking(compare(repository)) == []
+
+
+DIMMER = '<launch><node pkg="dimmer" exec="dim" name="dim"/></launch>\n'
+
+
+@pytest.mark.parametrize(
+    ("new", "launch", "is_breaking"),
+    [
+        ("", DIMMER, True),
+        ("<!-- <exec_depend>dimmer</exec_depend> -->", DIMMER, True),
+        ("<exec_depend>dimmer_suite</exec_depend>", DIMMER, False),
+        ("", DIMMER.replace("/></launch>", ' if="false"/></launch>'), False),
+        ("", DIMMER.replace('"dimmer"', '"other"'), False),
+    ],
+)
+def test_a_removed_dependency_that_a_launch_file_uses_is_breaking(repository, compare, new, launch, is_breaking):
+    old = MANIFEST.format("<buildtool_depend>ament_cmake</buildtool_depend><exec_depend>dimmer</exec_depend>")
+    repository.commit({"lamp/package.xml": old, "lamp/launch/lamp.launch.xml": launch})
+    repository.write({"lamp/package.xml": old.replace("<exec_depend>dimmer</exec_depend>", new)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    expected = "lamp/launch/lamp.launch.xml still uses 'dimmer', and no package.xml names it"
+    assert reasons == ([expected] if is_breaking else [])
+
+
+@pytest.mark.parametrize(
+    ("text", "is_breaking"), [("<!-- <exec_depend>dimmer</exec_depend> -->", True), ("<url>dimmer</url>", False)]
+)
+def test_a_package_that_only_a_comment_names_is_new(repository, compare, text, is_breaking):
+    old = '<launch>{}<node pkg="lamp" exec="lamp"/></launch>\n'
+    repository.commit({"lamp/package.xml": MANIFEST.format(text), "lamp/launch/lamp.launch.xml": old.format("")})
+    node = '<node pkg="dimmer" exec="dim"/>'
+    repository.write({"lamp/launch/lamp.launch.xml": old.format(node)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    expected = "package.xml does not name 'dimmer', without which the node does not start"
+    assert reasons == ([expected] if is_breaking else [])

@@ -13,6 +13,8 @@ from linkwright.xacro.cache import read_document
 
 _SUFFIXES = (".yaml", ".yml", ".launch", ".xml", ".xacro", ".py", ".cpp", ".hpp", ".h", ".repos", ".rosinstall")
 """The ends of the names of files that may name a package."""
+_COMMENT = re.compile(r"<!--.*?-->|^\s*(?:#(?!include\b)|//)[^\n]*", re.DOTALL | re.MULTILINE)
+"""A comment in XML, or a line with only a comment."""
 
 
 def is_undeclared_and_new(versions: Versions, path: str, package: str) -> bool:
@@ -28,11 +30,11 @@ def is_undeclared_and_new(versions: Versions, path: str, package: str) -> bool:
     folder = versions.new.package_of(path)
     if folder is None or not (versions.old.file(folder) / MANIFEST).is_file():
         return False
-    return not _is_declared(versions.new, package) and not is_named(versions.old, package)
+    return not is_declared(versions.new, package) and not is_named(versions.old, package)
 
 
 @cached_in_review(maxsize=256)
-def _is_declared(version: Version, package: str) -> bool:
+def is_declared(version: Version, package: str) -> bool:
     """Return whether a package of a version is the package, or depends on it."""
     if package in version.shares:
         return True
@@ -46,6 +48,6 @@ def _is_declared(version: Version, package: str) -> bool:
 
 @cached_in_review(maxsize=256)
 def is_named(version: Version, package: str) -> bool:
-    """Return whether a file of a version names a package."""
+    """Return whether a file of a version names a package outside of comments."""
     word = re.compile(rf"(?<!\w){re.escape(package)}(?!\w)")
-    return any(word.search(version.text(path)) for path in version.paths(_SUFFIXES))
+    return any(word.search(_COMMENT.sub("", version.text(path))) for path in version.paths(_SUFFIXES))

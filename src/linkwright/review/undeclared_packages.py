@@ -12,6 +12,9 @@ from linkwright.lint.dependencies import is_always_installed, is_covered, is_in_
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.launches.missing_programs import uses_package
+from linkwright.review.required_packages import is_declared
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.used_packages import is_python_source
 from linkwright.review.users.package_lookups import drop_told_lookups
@@ -25,6 +28,8 @@ _ADDITIONS = (
     "packages included for the first time: {names}",
     "{kind} added: {names}",
 )
+_REMOVAL, _ADDITION = "{tags} removed: {packages}", "{tags} added: {packages}"
+"""The sentences about dependencies that a manifest loses and gets."""
 _INTERFACE_HEADER = r"^[ \t]*#[ \t]*include[ \t]*[\"<]{name}/(?:(?:msg|srv|action)/\w+\.hpp|[A-Z]\w*\.h)[\">]"
 _INTERFACE_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)")
 _OPTIONAL_INCLUDE = "__has_include"
@@ -88,7 +93,10 @@ class _Marker:
         self.told: list[Diagnostic] = []
 
     def mark(self, change: Change) -> Change:
-        """Return a change, with a reason if it adds an undeclared package."""
+        """Return a change, with a reason if it adds an undeclared package, or removes a dependency that is used."""
+        if change.sentence.template == _REMOVAL and change.effect is not Effect.BREAKING:
+            reasons = list(self._find_uses(str(change.sentence.arguments["packages"])))
+            return replace(change, effect=Effect.BREAKING, reason=joined(reasons, "; ")) if reasons else change
         if change.sentence.template not in _ADDITIONS or change.effect is Effect.BREAKING:
             return change
         text = str(change.sentence)
@@ -100,6 +108,18 @@ class _Marker:
             return change
         self.told += told
         return replace(change, effect=Effect.BREAKING, reason=self._make_reason(list(names)))
+
+    def _find_uses(self, packages: str) -> Iterator[Phrase]:
+        """Yield the removed dependencies that launch files of the package use, unless an added one may bring them."""
+        if any(change.sentence.template == _ADDITION for change in self._subject.changes):
+            return
+        folder = self._version.package_of(self._path)
+        paths = [path for path in find_launch_files(self._version) if self._version.package_of(path) == folder]
+        for name in (text.partition(" (")[0] for text in packages.split(", ")):
+            used = () if is_declared(self._version, name) else paths
+            for path in (path for path in used if uses_package(self._version, path, name)):
+                yield phrase("{path} still uses '{name}', and no package.xml names it", path=path, name=name)
+                break
 
     def _make_reason(self, names: Sequence[str]) -> Phrase:
         text = joined([f"'{name}'" for name in names])

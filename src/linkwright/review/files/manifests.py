@@ -12,6 +12,7 @@ from linkwright.packages.readers.package_xml import CATKIN, Manifest
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.files.dependencies import compare_dependencies, find_lost_ros_versions
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
@@ -80,14 +81,22 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
             if tag == "name":
                 text = phrase("package '{old}' renamed to '{new}'", old=old_text, new=new_text)
             reason = phrase("packages and launch files that name the package do not find it")
+            is_breaking = tag == "name" and not (old.ros_versions and _is_old_project(pair, new_text))
             element = new.root.first(tag) or new.root
-            pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
+            pair.add(text, pair.location(element.span()), reason if is_breaking else None)
     for tag in ("maintainer", "author"):
         old_addresses, new_addresses = (_join_addresses(manifest, tag) for manifest in manifests)
         if old_addresses != new_addresses and _join_texts(old, tag) == _join_texts(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
     _compare_descriptions(pair, old, new)
+
+
+def _is_old_project(pair: FilePair, name: str) -> bool:
+    """Return whether CMakeLists.txt of the old version has a name, without which catkin and ament refuse to build."""
+    build_file = (PurePosixPath(pair.old_path).parent / CMAKE_FILE).as_posix()
+    is_built = pair.versions.old.file(build_file).is_file()
+    return is_built and read_cmake_facts(pair.versions.old, build_file).project == name
 
 
 def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:

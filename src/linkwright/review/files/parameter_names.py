@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import name_reason, names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics, FindRemappings
 from linkwright.review.files.key_readers import KeyReaders
@@ -156,7 +156,7 @@ class NameRules:
             return names_reason(sorted(removed))
         if removed and _PLUGIN_LIST.search(parameter):
             lost = removed - self._find_plugins(parameter) - self._topics.find_replaced_layers(parameter)
-            return _make_plugin_reason(lost) if lost else None
+            return _make_plugin_reason(parameter, lost) if lost else None
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
             return make_controllers_reason(sorted(removed))
         reason = self._topics.find_reason(parameter)
@@ -204,7 +204,7 @@ class NameRules:
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         lost = _find_name_items(old) - self._find_plugins(parameter) if _PLUGIN_LIST.search(parameter) else set[str]()
         if lost:
-            return _make_plugin_reason(lost)
+            return _make_plugin_reason(parameter, lost)
         topic_reason = self._topics.find_reason(parameter)
         if topic_reason is not None or self._topics.is_dropped_source(parameter):
             return topic_reason
@@ -375,8 +375,19 @@ def _separate_by_slashes(part: str) -> str:
     return part.replace(".", "/")
 
 
-def _make_plugin_reason(names: Collection[str]) -> Phrase:
-    return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
+def _make_plugin_reason(parameter: str, names: Collection[str]) -> Phrase:
+    """Return the reason why a list without plugins is breaking. Programs name those of servers, but no layers."""
+    texts = quoted_names(sorted(names))
+    if "costmap" in (find_node_name(parameter) or ""):
+        return counted(
+            "the costmap lacks the layer {names}", "the costmap lacks the layers {names}", len(names), names=texts
+        )
+    return counted(
+        "programs that name the plugin {names} do not find it",
+        "programs that name the plugins {names} do not find them",
+        len(names),
+        names=texts,
+    )
 
 
 def _read_controller_types(values: Mapping[str, YamlValue]) -> dict[str, str]:

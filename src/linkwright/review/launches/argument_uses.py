@@ -46,6 +46,12 @@ def is_used(name: str, entries: Sequence[Entry]) -> bool:
     )
 
 
+def had_action(entry: Entry, argument: str, old_entries: Sequence[Entry]) -> bool:
+    """Return whether an old version had an action, perhaps under another name with the same use of an argument."""
+    similar = [other for other in old_entries if other.kind == entry.kind]
+    return any(other.name == entry.name for other in similar) or is_used(argument, similar)
+
+
 def read_code(file: Path) -> str:
     """Return the text of a launch file without comments."""
     return _COMMENT.sub("", file.read_text("utf-8", errors="replace"))

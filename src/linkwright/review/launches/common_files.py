@@ -1,8 +1,11 @@
-"""Tell which launch files common packages have, and which arguments these declare."""
+"""Tell which launch files common packages have, which arguments these declare and which nodes they start."""
 
 from __future__ import annotations
 
 import re
+
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.outlines import CONDITION, NAMESPACE, NAMESPACE_OF_INCLUDED, Entry, LaunchOutline
 
 _PACKAGE_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?:.*/)?(?P<file>[^/$]+)")
 _ARGUMENTS = {
@@ -51,6 +54,31 @@ _FILES = {
         ros_gz_sim.launch.py ros_gz_spawn_model.launch ros_gz_spawn_model.launch.py""",
 }
 """The launch files that a package has in any distribution."""
+_LOCALIZATION = {
+    "map_server": "nav2_map_server/map_server",
+    "amcl": "nav2_amcl/amcl",
+    "lifecycle_manager_localization": "nav2_lifecycle_manager/lifecycle_manager",
+}
+_NAVIGATION = {
+    "controller_server": "nav2_controller/controller_server",
+    "smoother_server": "nav2_smoother/smoother_server",
+    "planner_server": "nav2_planner/planner_server",
+    "recoveries_server": "nav2_recoveries/recoveries_server",
+    "behavior_server": "nav2_behaviors/behavior_server",
+    "bt_navigator": "nav2_bt_navigator/bt_navigator",
+    "waypoint_follower": "nav2_waypoint_follower/waypoint_follower",
+    "velocity_smoother": "nav2_velocity_smoother/velocity_smoother",
+    "lifecycle_manager_navigation": "nav2_lifecycle_manager/lifecycle_manager",
+}
+_NODES = {
+    "localization_launch.py": _LOCALIZATION,
+    "navigation_launch.py": _NAVIGATION,
+    "bringup_launch.py": _LOCALIZATION | _NAVIGATION,
+}
+"""The programs of the nodes, by name, that a launch file of Nav2 starts in each distribution that has the program."""
+_NODES_PACKAGE = "nav2_bringup"
+_NO_LOCALIZATION = (("slam", "true"), ("use_localization", "false"))
+"""The arguments of a launch file of Nav2, with the values for which it does not start the nodes of localization."""
 _SAME = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
 """The former names of packages."""
 _OTHER_FILES = re.compile(r"simulation|tb[34]|example|demo|cloned|unique")
@@ -74,3 +102,26 @@ def find_known_files(package: str) -> frozenset[str] | None:
     """Return the names of the launch files of a common package, or None if they are unknown."""
     files = _FILES.get(_SAME.get(package, package))
     return None if files is None else frozenset(files.split())
+
+
+def find_starting_include(node: Entry, old: LaunchOutline, new: LaunchOutline) -> Entry | None:
+    """Return the action that includes a file of a common package which starts a node by the same name; None if none is.
+
+    Args:
+        node: a node of the old version.
+        old: the outline with the node.
+        new: the outline with the included file.
+    """
+    name = node.settings.get("name") or node.name.rpartition("/")[2]
+    for entry in new.entries if node.kind == "node" else ():
+        match = _PACKAGE_FILE.fullmatch(entry.name) if entry.kind == "include" else None
+        if match is None or match["package"] != _NODES_PACKAGE or _NODES.get(match["file"], {}).get(name) != node.name:
+            continue
+        values = {setting: new.resolve(value) for setting, value in entry.settings.items()}
+        has_localization = not any(values.get(key, "").lower() == value for key, value in _NO_LOCALIZATION)
+        is_left = name in _LOCALIZATION and not has_localization
+        namespaces = values.get("namespace", ""), values.get(NAMESPACE_OF_INCLUDED, "")
+        is_same = "/".join(filter(None, namespaces)) == old.resolve(node.settings.get(NAMESPACE, ""))
+        if is_same and not is_left and evaluate_condition(values.get(CONDITION, "")) is not False:
+            return entry
+    return None

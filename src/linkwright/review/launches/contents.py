@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.argument_uses import read_code, uses_argument
 from linkwright.review.launches.outlines import (
+    FAILURES,
     IGNORED_TAG,
     PASSES_ALL_ARGUMENTS,
     READING,
@@ -51,6 +52,10 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     ]
     sorted_entries = sorted(entries, key=lambda entry: _SHOWN_KINDS.index(entry.kind))
     titles = list(dict.fromkeys(_format_title_with_settings(entry, unused) for entry in sorted_entries))
+    if any(not entry.settings.keys().isdisjoint(FAILURES) for entry in entries):
+        return phrase(
+            "{items}; an action has wrong arguments, so that the file fails", items=joined_first(titles, MAX_NAMES)
+        )
     return joined_first(titles, MAX_NAMES) if titles else None
 
 

@@ -20,6 +20,7 @@ from linkwright.review.files.parameter_names import (
     switches_transform,
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
+from linkwright.review.launches.argument_uses import had_action
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
@@ -534,7 +535,7 @@ def _find_breaking_uses(name: str, old_outline: LaunchOutline, new_outline: Laun
     """Yield the uses of an argument in settings for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
-        if entry.kind == "argument":
+        if entry.kind == "argument" or not had_action(entry, name, old_outline.entries):
             continue
         for setting, value in entry.settings.items():
             if variable.search(value):

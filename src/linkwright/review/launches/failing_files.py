@@ -12,7 +12,7 @@ from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.launches.included import MAX_INCLUDE_DEPTH, IncludedActions
-from linkwright.review.launches.missing_programs import find_missing_file, lacks_program
+from linkwright.review.launches.missing_programs import find_missing_file, lacks_executable, lacks_program
 from linkwright.review.launches.outlines import CONDITION, FAILURES, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -51,15 +51,26 @@ def find_failure(version: Version, path: str, outline: LaunchOutline, depth: int
     return _find_failing_action(version, path, outline, depth)
 
 
-def report_repair(pair: FilePair, failure: LaunchFailure, new: LaunchOutline) -> None:
+def report_repair(pair: FilePair, failure: LaunchFailure | None, old: LaunchOutline, new: LaunchOutline) -> None:
     """Report that a launch file can start now, unless the new version also fails.
+
+    A file of ROS 1 also starts if it does not find a program. The report names the nodes whose programs exist now.
 
     Args:
         pair: both versions of the launch file.
-        failure: the reason why the old version fails.
+        failure: the reason why the old version fails; None if it may start.
+        old: the outline of the old version.
         new: the outline of the new version.
     """
-    if find_failure(pair.versions.new, pair.new_path, new) is None:
+    versions = pair.versions
+    if failure is None and old.is_ros1 and new.is_ros1:
+        names = {entry.name for entry in old.entries if lacks_executable(versions.old, entry)}
+        found = {entry.name: entry for entry in new.entries if entry.name in names}
+        for name, entry in found.items():
+            if not lacks_executable(versions.new, entry):
+                text = phrase("before this change, no executable program '{name}' was found to start", name=name)
+                pair.add(text, pair.location(entry.span))
+    elif failure is not None and find_failure(versions.new, pair.new_path, new) is None:
         text = phrase("before this change, the launch file always failed: {reason}", reason=failure.reason)
         pair.add(text, pair.location(failure.span, is_old=True))
 

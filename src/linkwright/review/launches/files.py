@@ -160,8 +160,7 @@ def compare_launch_files(pair: FilePair) -> None:
     failure = find_failure(pair.versions.old, pair.old_path, outlines[0])
     if failure is not None or _is_refused_by_default(old):
         _mark_unbreaking(pair, keeps_renaming=True)
-    if failure is not None:
-        report_repair(pair, failure, outlines[1])
+    report_repair(pair, failure, *outlines)
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
 

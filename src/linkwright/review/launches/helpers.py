@@ -191,7 +191,7 @@ class HelperFunctions:
         if not isinstance(node, ast.FunctionDef):
             return None
         is_simple = not node.decorator_list and node.args.vararg is None and node.args.kwarg is None
-        if not is_simple or not _only_returns_value(node) or self._makes_actions(file, node):
+        if not is_simple or not only_returns_value(node) or self._makes_actions(file, node):
             return None
         return Function(file, node)
 
@@ -280,7 +280,7 @@ class HelperFunctions:
                 yield path
 
 
-def _only_returns_value(function: ast.FunctionDef) -> bool:
+def only_returns_value(function: ast.FunctionDef) -> bool:
     """Return whether a function only assigns local names and returns a value."""
     *statements, last = function.body
     return (

@@ -16,7 +16,7 @@ from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.argument_uses import USED_ARGUMENT, find_defaulted_arguments, uses_argument
 from linkwright.review.launches.bridged_topics import find_bridged_topics
-from linkwright.review.launches.common_files import find_known_arguments
+from linkwright.review.launches.common_files import find_known_arguments, find_starting_include
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
@@ -102,11 +102,22 @@ class IncludedActions:
     def find_unmatched_file(self, entry: Entry, other: IncludedActions) -> str | None:
         """Return the included file with an action that the other version does not include.
 
-        The result is None if there is no such file.
+        It may be a file of a common package, as it is written. The result is None if there is no such file.
         """
-        if entry.kind not in _MOVABLE_KINDS:
+        if entry.kind not in _MOVABLE_KINDS or other._find_file_with(entry):
             return None
-        return None if other._find_file_with(entry) else self._find_file_with(entry)
+        file = self._find_file_with(entry)
+        if file is None and other._find_common_file_with(entry, other.outline) is None:
+            file = self._find_common_file_with(entry, other.outline)
+        return file
+
+    def _find_common_file_with(self, entry: Entry, own: LaunchOutline) -> str | None:
+        """Return the included file of a common package that starts a node of an outline, or None."""
+        for outline in (self.outline, *self._included.values()):
+            include = find_starting_include(entry, own, outline)
+            if include is not None:
+                return include.name
+        return None
 
     def offers_bridged_topic(self, name: str) -> bool:
         """Return whether a bridge of Gazebo in the file or in its included files publishes a topic."""

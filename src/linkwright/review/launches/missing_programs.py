@@ -21,7 +21,8 @@ from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.common_files import find_known_files
-from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.outlines import CONDITION, PROGRAM_KINDS, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -209,6 +210,14 @@ def lacks_program(version: Version, entry: Entry) -> bool:
     return owner.lacks(name) and (name.endswith(_SCRIPT_SUFFIXES) or not owner.may_compute_names)
 
 
+def lacks_executable(version: Version, entry: Entry) -> bool:
+    """Return whether a launch action starts a program that its package lacks, or a script that is not executable."""
+    package, _, name = entry.name.partition("/")
+    owner = find_packages(version).get(package) if entry.kind in PROGRAM_KINDS else None
+    is_unexecutable = owner is not None and name.endswith(_SCRIPT_SUFFIXES) and owner.has_only_unexecutable(name)
+    return is_unexecutable or lacks_program(version, entry)
+
+
 def lacks_included_file(version: Version, entry: Entry) -> bool:
     """Return whether a launch action includes a file that its package in the repository certainly does not install."""
     match = _FILE_OF_PACKAGE.fullmatch(entry.name) if entry.kind == "include" else None
@@ -274,6 +283,21 @@ def find_old_package_names(versions: Versions, changed_files: Sequence[ChangedFi
                     path,
                     Change(change, Effect.BREAKING, phrase("the launch file does not find the package"), location),
                 )
+
+
+def uses_package(version: Version, path: str, package: str) -> bool:
+    """Return whether a launch file uses a package in an action that its defaults may make, apart from tests."""
+    if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) or package not in version.text(path):
+        return False
+    try:
+        outline = read_outline(version.file(path), version.root)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+        return False
+    return any(
+        package in _find_named_packages(entry)
+        and evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) is not False
+        for entry in outline.entries
+    )
 
 
 def _find_named_packages(entry: Entry) -> Iterator[str]:

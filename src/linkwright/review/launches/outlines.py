@@ -32,7 +32,9 @@ NAMES_AS_REMAPPINGS = "names instead of pairs in remappings"
 """The setting with the items of ``remappings`` in Python that are texts, for which the launch file fails."""
 MISSING_ARGUMENT = "missing argument"
 """The setting with the required argument of a class in Python that a call lacks, for which the launch file fails."""
-FAILURES = (NAMES_AS_REMAPPINGS, MISSING_ARGUMENT)
+UNKNOWN_ARGUMENT = "unknown argument"
+"""The setting with the argument of a call that a class in Python does not have, for which the launch file fails."""
+FAILURES = (NAMES_AS_REMAPPINGS, MISSING_ARGUMENT, UNKNOWN_ARGUMENT)
 """The settings for which the launch file fails."""
 LOG_MESSAGE = "log message"
 """The kind of an action that only writes a text to the log."""

@@ -10,8 +10,15 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.list_additions import AddedItem, find_added_items, find_later_items
 from linkwright.review.launches.node_settings import format_settings, split_choice, split_parameters, split_remappings
-from linkwright.review.launches.outlines import CONDITION, MISSING_ARGUMENT, Entry, Scope, find_own_default
-from linkwright.review.launches.python_syntax import find_missing_argument, find_name_and_value
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    MISSING_ARGUMENT,
+    UNKNOWN_ARGUMENT,
+    Entry,
+    Scope,
+    find_own_default,
+)
+from linkwright.review.launches.python_syntax import find_missing_argument, find_name_and_value, find_unknown_argument
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 from linkwright.review.launches.titles import shorten_command
 
@@ -110,6 +117,9 @@ class ActionReader:
         missing = find_missing_argument(self.python, call, keywords)
         if missing is not None:
             settings[MISSING_ARGUMENT] = missing
+        unknown = find_unknown_argument(self.python, call, keywords)
+        if unknown is not None:
+            settings = {key: value for key, value in settings.items() if key != unknown} | {UNKNOWN_ARGUMENT: unknown}
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
 
     def _format_included_path(self, call: ast.Call, keywords: Mapping[str, ast.expr]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 
@@ -23,6 +23,19 @@ _REQUIRED_ARGUMENTS = {
     "ExecuteProcess": ("cmd",),
 }
 """The keyword arguments without which a class of launch and launch_ros raises an error."""
+_PROCESS_ARGUMENTS = """
+    additional_env cached_output cmd condition cwd emulate_tty env log_cmd name on_exit output output_format prefix
+    respawn respawn_delay respawn_max_retries shell sigkill_timeout sigterm_timeout"""
+_NODE_ARGUMENTS = f"""
+    {_PROCESS_ARGUMENTS} arguments exec_name executable namespace node_name node_namespace package parameters remappings
+    ros_arguments"""
+_KNOWN_ARGUMENTS = {
+    "Node": _NODE_ARGUMENTS,
+    "LifecycleNode": f"{_NODE_ARGUMENTS} autostart",
+    "ComposableNodeContainer": f"{_NODE_ARGUMENTS} composable_node_descriptions",
+    "ExecuteProcess": _PROCESS_ARGUMENTS,
+}
+"""All keyword arguments of a class of launch and launch_ros in any distribution; others raise an error."""
 _LAUNCH_PACKAGES = ("launch", "launch_ros")
 
 
@@ -131,10 +144,27 @@ def find_missing_argument(python: PythonFile, call: ast.Call, names: Collection[
     """
     if call.args or any(keyword.arg is None for keyword in call.keywords):
         return None
+    function = _find_launch_class(python, call)
+    missing = [name for name in _REQUIRED_ARGUMENTS.get(function, ()) if name not in names]
+    return missing[0] if missing else None
+
+
+def find_unknown_argument(python: PythonFile, call: ast.Call, names: Iterable[str]) -> str | None:
+    """Return the first keyword argument that a class of launch or launch_ros does not have, or None.
+
+    Args:
+        python: the parsed file.
+        call: the call.
+        names: the names of the keyword arguments of the call, with the new ones in place of old ones.
+    """
+    known = _KNOWN_ARGUMENTS.get(_find_launch_class(python, call))
+    unknown = [] if known is None else [name for name in names if name not in known.split()]
+    return unknown[0] if unknown else None
+
+
+def _find_launch_class(python: PythonFile, call: ast.Call) -> str:
+    """Return the name of the called class, or an empty text for a class of another package with such a name."""
     owner, _, function = called_name(call).rpartition(".")
     sources = python.find_import_sources(owner.partition(".")[0] or function)
     modules = [module for module, _ in sources] or [owner]
-    if not all(module.partition(".")[0] in _LAUNCH_PACKAGES for module in modules):
-        return None  # a class of another package with the same name
-    missing = [name for name in _REQUIRED_ARGUMENTS.get(function, ()) if name not in names]
-    return missing[0] if missing else None
+    return function if all(module.partition(".")[0] in _LAUNCH_PACKAGES for module in modules) else ""

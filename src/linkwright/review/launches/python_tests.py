@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from typing import NamedTuple
 
 from linkwright.diagnostics import Span, phrase
@@ -11,6 +12,7 @@ from linkwright.packages.readers.python_values import PythonFile, argument_of, c
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.expressions import unparse_on_one_line
+from linkwright.review.launches.helpers import find_parameter_defaults, only_returns_value
 from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.sources.reading import try_read_source
 
@@ -22,6 +24,9 @@ SUBSTITUTIONS = frozenset(
 _CONFIGURATIONS = "launch_configurations"
 """The attribute of a launch context with the values of the arguments."""
 _TEXT_METHODS = frozenset({"lower", "strip", "upper"})
+_TRUE_TEXTS = ("y", "yes", "t", "true", "on", "1")
+"""The texts that ``strtobool`` of distutils takes for true, in any case."""
+_MAX_CALL_DEPTH = 3
 _EQUALITIES = (ast.Eq, ast.In)
 _INEQUALITIES = (ast.NotEq, ast.NotIn)
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -121,13 +126,24 @@ class ArgumentReader:
     Args:
         python: the file.
         function: the function; None for the file itself.
+        passed: the values of the parameters if a test calls the function; None for a function that makes actions.
+        depth: the depth of nested calls at which the function is read.
     """
 
-    def __init__(self, python: PythonFile, function: _Function | None) -> None:
+    def __init__(
+        self,
+        python: PythonFile,
+        function: _Function | None,
+        passed: Mapping[str, ast.expr] | None = None,
+        depth: int = 0,
+    ) -> None:
         self._python = python
+        self._depth = depth
         parameters = function.args.args if function is not None else []
         self._names = {parameter.arg for parameter in parameters}
-        self._arguments = find_opaque_arguments(python, function) if function is not None else {}
+        if passed is None:
+            passed = find_opaque_arguments(python, function) if function is not None else {}
+        self._arguments = passed
 
     def read_test(self, node: ast.expr) -> ast.expr:
         """Return a test as an expression of texts, in which ``$(var NAME)`` is a value.
@@ -146,6 +162,17 @@ class ArgumentReader:
         value = self._resolve(node)
         if isinstance(value, ast.Constant) and isinstance(value.value, bool):
             return value
+        if value is not node and isinstance(value, (ast.BoolOp, ast.UnaryOp, ast.Compare)):
+            return self.read_test(value)
+        if isinstance(value, ast.Call):
+            called = self._enter_function(value)
+            if called is not None:
+                return called[0].read_test(called[1])
+            function = called_name(value).rpartition(".")[2]
+            if function == "bool" and len(value.args) == 1:
+                return self.read_test(value.args[0])
+            if function == "strtobool" and len(value.args) == 1:
+                return _make_true_test(self._read_text(value.args[0]))
         return ast.Compare(self._read_text(node), [ast.NotEq()], [ast.Constant("")])
 
     def _read_comparison(self, node: ast.Compare, operator: ast.cmpop, right: ast.expr) -> ast.expr:
@@ -175,12 +202,17 @@ class ArgumentReader:
             return _make_variable(self._resolve(value.slice))
         if not isinstance(value, ast.Call):
             raise _UnknownTestError
+        called = self._enter_function(value)
+        if called is not None:
+            return called[0]._read_text(called[1])
         function = called_name(value).rpartition(".")[2]
         owner = value.func.value if isinstance(value.func, ast.Attribute) else None
         if function == "str" and len(value.args) == 1:
             return self._read_text(value.args[0])
         if function in _TEXT_METHODS and owner is not None and not value.args:
             return ast.Call(ast.Attribute(self._read_text(owner), function, ast.Load()), [], [])
+        if function == "get" and owner is not None and _is_configurations(owner) and value.args:
+            return _make_variable(self._resolve(value.args[0]))
         performed = owner if function == "perform" else None
         if function == "perform_substitution" and value.args:
             performed = value.args[0]
@@ -195,8 +227,8 @@ class ArgumentReader:
         if not isinstance(value, ast.Call) or called_name(value).rpartition(".")[2] != _CONFIGURATION:
             return None
         name = value.args[0] if value.args else argument_of(value, "variable_name")
-        is_name = isinstance(name, ast.Constant) and isinstance(name.value, str)
-        return name.value if is_name and isinstance(name, ast.Constant) and isinstance(name.value, str) else None
+        name = None if name is None else self._resolve(name)
+        return name.value if isinstance(name, ast.Constant) and isinstance(name.value, str) else None
 
     def find_substitution(self, node: ast.expr) -> ast.Call | None:
         """Return the call that makes the substitution which an expression is; None for other expressions."""
@@ -216,11 +248,49 @@ class ArgumentReader:
             )
         return isinstance(value, ast.Constant) and isinstance(value.value, str)
 
+    def _enter_function(self, call: ast.Call) -> tuple[ArgumentReader, ast.expr] | None:
+        """Return the value that a called function of the file returns, with a reader of it; None for other calls.
+
+        Raises:
+            _UnknownTestError: the value of a call of the file is unknown.
+        """
+        name = called_name(call)
+        definitions = [
+            node for node in ast.walk(self._python.tree) if isinstance(node, ast.FunctionDef) and node.name == name
+        ]
+        if not definitions:
+            return None
+        if len(definitions) > 1 or not only_returns_value(definitions[0]) or self._depth >= _MAX_CALL_DEPTH:
+            raise _UnknownTestError
+        function, last = definitions[0], definitions[0].body[-1]
+        names = [parameter.arg for parameter in function.args.args]
+        passed = dict(zip(names, call.args, strict=False))
+        passed |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+        values = find_parameter_defaults(function) | {name: self._replace_names(item) for name, item in passed.items()}
+        is_clear = not any(
+            isinstance(part, ast.Name) and part.id in names and part is not values.get(part.id)
+            for value in values.values()
+            for part in ast.walk(value)
+        )
+        if not is_clear or not isinstance(last, ast.Return) or last.value is None:
+            raise _UnknownTestError
+        return ArgumentReader(self._python, function, values, self._depth + 1), last.value
+
+    def _replace_names(self, node: ast.expr) -> ast.expr:
+        """Return an expression with the values of the parameters of the function in place of their names."""
+        arguments = self._arguments
+
+        class Replacement(ast.NodeTransformer):
+            def visit_Name(self, node: ast.Name) -> ast.expr:
+                return arguments.get(node.id, node)
+
+        return node if not arguments else Replacement().visit(deepcopy(node))
+
     def _resolve(self, node: ast.expr) -> ast.expr:
         """Return the value of a name, also of a parameter of a function that ``OpaqueFunction`` calls."""
         value = self._python.resolved(node)
         if isinstance(value, ast.Name) and value.id in self._names:
-            return self._arguments.get(value.id, value)
+            return self._python.resolved(self._arguments.get(value.id, value))
         return value
 
 
@@ -228,6 +298,12 @@ def _make_variable(name: ast.expr) -> ast.expr:
     if not isinstance(name, ast.Constant) or not isinstance(name.value, str):
         raise _UnknownTestError
     return ast.Constant(f"$(var {name.value})")
+
+
+def _make_true_test(text: ast.expr) -> ast.expr:
+    lower = ast.Call(ast.Attribute(text, "lower", ast.Load()), [], [])
+    items: list[ast.expr] = [ast.Constant(item) for item in _TRUE_TEXTS]
+    return ast.Compare(lower, [ast.In()], [ast.List(items, ast.Load())])
 
 
 def _is_configurations(node: ast.expr) -> bool:

@@ -389,6 +389,13 @@ def _explain_stopped_programs(programs: Collection[Program]) -> Phrase:
     return phrase("by default, {entries} no longer start", entries=joined_first(names, MAX_NAMES))
 
 
+def _find_stopped_programs(reason: Phrase) -> str | None:
+    """Return the programs that do not start by default, if that is the reason; None for other reasons."""
+    names = reason.arguments.get("entry", reason.arguments.get("entries"))
+    is_stop = reason.template.endswith(("} no longer starts", "} no longer start"))
+    return names if is_stop and isinstance(names, str) else None
+
+
 def _group_settings(
     settings: Sequence[_Setting], *, is_include: bool = False
 ) -> Iterator[tuple[Phrase, Phrase | None, str]]:
@@ -455,6 +462,9 @@ def _format_setting(setting: _Setting) -> str:
 def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
     """Return one reason for a group of settings, with all names that it breaks."""
     reasons = [setting.reason for setting in group if setting.reason is not None]
+    stopped = dict.fromkeys(filter(None, map(_find_stopped_programs, reasons)))
+    if len(stopped) > 1:
+        return phrase("by default, {entries} no longer start", entries=joined(stopped))
     if len(set(map(str, reasons))) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
         return reasons[0] if reasons else None
     certain = [reason for reason in reasons if reason.template == name_reason("").template]

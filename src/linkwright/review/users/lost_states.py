@@ -1,11 +1,11 @@
-"""Find configurations of fake controllers that start in a state that a semantic description does not have."""
+"""Find configurations of fake controllers with a state or joint that a semantic description does not have."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import LinkwrightError, counted, phrase, quoted_names
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.lenient_xml import read_lenient_root
@@ -13,6 +13,8 @@ from linkwright.review.versions import Version, Versions
 
 _SRDF, _SRDF_XACRO = ".srdf", ".srdf.xacro"
 _SETTINGS = (".yaml", ".yml")
+_JOINT = "joint"
+_FAKE_CONTROLLERS = "fake_controllers.yaml"
 _INITIAL = re.compile(r"^initial:[^\n]*\n(?P<items>(?:[ \t]+[^\n]*\n?|-[^\n]*\n?|[ \t]*#[^\n]*\n?|\n)*)", re.MULTILINE)
 _STATE = re.compile(r"-[ \t]+group:[ \t]*(?P<group>[^\s#]+)[^\n]*\n[ \t]+pose:[ \t]*(?P<pose>[^\s#]+)")
 
@@ -42,6 +44,46 @@ def find_lost_states(versions: Versions, changed_files: Sequence[ChangedFile]) -
                     sentence = phrase("names the state '{name}', which does not exist", name=name)
                     reason = phrase("the fake controllers do not find the initial state")
                     yield path, Change(sentence, Effect.BREAKING, reason, location)
+
+
+def find_lost_joints(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the fake controllers with a joint that the groups of a semantic description have replaced by others.
+
+    Groups that newly have a chain or link may have any joint.
+    """
+    for file in changed_files:
+        if not file.old_path or not file.new_path or not file.new_path.endswith(_SRDF):
+            continue
+        old, new = (_read_group_parts(v, p) for v, p in ((versions.old, file.old_path), (versions.new, file.new_path)))
+        folder = versions.new.package_of(file.new_path)
+        if folder is None or any(tag != _JOINT for tag, _ in new - old):
+            continue
+        lost = {name for tag, name in old - new if tag == _JOINT}
+        for path in versions.new.paths((_FAKE_CONTROLLERS,), folder) if lost else ():
+            lines = versions.new.text(path).splitlines()
+            joints = [line.strip().removeprefix("-").strip() for line in lines]
+            added = sorted(name for _, name in new - old if name not in joints)
+            for number, name in enumerate(joints):
+                if name in lost and added:
+                    sentence = phrase("names the joint '{name}', which no group has any more", name=name)
+                    reason = counted(
+                        "MoveIt finds no controller for the joint {names}",
+                        "MoveIt finds no controller for the joints {names}",
+                        len(added),
+                        names=quoted_names(added),
+                    )
+                    location = Location(path, number + 1, lines[number].index(name) + 1)
+                    yield path, Change(sentence, Effect.BREAKING, reason, location)
+
+
+def _read_group_parts(version: Version, path: str) -> set[tuple[str, str]]:
+    """Return the tags and names of the joints, links and chains of the groups of a semantic description."""
+    try:
+        root = read_lenient_root(version.file(path))
+    except (LinkwrightError, OSError):
+        return set()
+    parts = (part for group in root.elements("group") for part in group.elements())
+    return {(part.tag, part.attributes.get("name", str(sorted(part.attributes.items())))) for part in parts}
 
 
 def _find_initial_states(version: Version, path: str) -> Iterator[tuple[str, Location]]:

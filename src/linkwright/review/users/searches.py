@@ -36,7 +36,7 @@ from linkwright.review.users.lost_programs import find_lost_programs
 from linkwright.review.users.lost_registrations import find_lost_registrations
 from linkwright.review.users.lost_scripts import find_lost_scripts
 from linkwright.review.users.lost_sources import find_lost_sources
-from linkwright.review.users.lost_states import find_lost_states
+from linkwright.review.users.lost_states import find_lost_joints, find_lost_states
 from linkwright.review.users.lost_units import find_lost_units
 from linkwright.review.users.missing_fields import find_missing_fields
 from linkwright.review.users.missing_headers import find_missing_headers
@@ -74,7 +74,7 @@ SEARCHES: tuple[Search, ...] = (
         find_left_types,
         find_missing_fields,
     ),
-    *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
+    *(find_new_lookups, find_lost_joints, find_lost_states, find_lost_units, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
     *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures),
 )
