@@ -64,8 +64,10 @@ _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
-_UNSTAMPED_BY_DEFAULT = "enable_stamped_cmd_vel"
-"""The parameter of the nodes of Nav2 with velocity commands, which is false by default in most releases."""
+_UNSTAMPED_BY_DEFAULT = ("enable_stamped_cmd_vel", "publish_stamped_twist", "stamped")
+"""The parameters of Nav2's nodes with velocity commands, teleop_twist_joy and teleop_twist_keyboard.
+
+They are false by default (that of Nav2 in most releases)."""
 _CLOCK_PARAMETER = "use_sim_time"
 """The parameter of all nodes that launch files give, too."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
@@ -170,10 +172,9 @@ class NameRules:
         """Return the reason why adding a parameter is breaking, or None if it is not. A new node is not breaking."""
         if _is_nested(parameter) and not any(map(_is_nested, self._old)):
             return phrase("no node gets parameters below a second '{name}'", name=_PARAMETERS_KEY)
-        if parameter.endswith(f".{_UNSTAMPED_BY_DEFAULT}") and value.lower() == "true":
-            node = find_node_name(parameter)
-            if node is not None and node not in self._added_nodes:
-                return phrase("the message type of a topic changes between one with and one without a header")
+        node = find_node_name(parameter)
+        if node is not None and node not in self._added_nodes and _changes_header(parameter, value):
+            return phrase("the message type of a topic changes between one with and one without a header")
         return None
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
@@ -184,7 +185,7 @@ class NameRules:
         motion = _MOTION.match(parameter)
         if motion is not None and motion["name"] not in self._new_motions:
             return name_reason(motion["name"])
-        if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
+        if _changes_header(parameter, old) and self._has_node(parameter):
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None and controller["controller"] not in self._new_controllers:
@@ -282,6 +283,14 @@ class NameRules:
         """Return whether the new version has other parameters of the same node."""
         node = find_node_name(parameter)
         return node is not None and any(matches_node(other, node) for other in self._new_nodes)
+
+
+def _changes_header(parameter: str, value: str) -> bool:
+    """Return whether a value is the opposite of a default that chooses messages with or without a header."""
+    name = parameter.rpartition(".")[2]
+    return (name == _STAMPED_BY_DEFAULT and value.lower() == "false") or (
+        name in _UNSTAMPED_BY_DEFAULT and value.lower() == "true"
+    )
 
 
 def offers_frame(parameter: str) -> bool:
