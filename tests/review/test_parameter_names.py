@@ -435,6 +435,14 @@ def test_velocity_commands_of_a_node_that_newly_have_a_header_are_breaking(revie
         assert bool(review_changes(new, other + text)[1]) is is_breaking
 
 
+def test_a_type_of_a_controller_that_no_package_has_is_repaired(review_changes):
+    text = "controller_manager:\n  ros__parameters:\n    base:\n      type: {}/OmniController\n"
+    for package, is_breaking in (("ros2_controllers", False), ("omni_controllers", True)):
+        found, found_breaking = review_changes(text.format(package), text.format("omni_controller"))
+        assert found
+        assert bool(found_breaking) is is_breaking
+
+
 ROS1_BASE = """base_control:
   type: lamp_controllers/OmniController
   odom_topic: base_control/odom

@@ -54,6 +54,8 @@ _CONTROLLER_TYPE = re.compile(r"(?:[^.]*[./])?controller_manager\.ros__parameter
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
 """The parameters that name controllers which a program loads or commands."""
+_METAPACKAGES = ("ros_controllers", "ros2_controllers")
+"""Packages without controllers of their own, which others have."""
 _ROS1_CLASS = re.compile(r"\w+/\w+")
 """The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
@@ -365,7 +367,9 @@ def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
 
 
 def _find_typed_controller(parameter: str, old: str, new: str) -> str | None:
-    """Return the controller whose type a parameter sets; None for other parameters."""
+    """Return the controller whose type a parameter sets; None for other parameters and for types that never exist."""
+    if old.partition("/")[0] in _METAPACKAGES:
+        return None
     match = _CONTROLLER_TYPE.fullmatch(parameter) or _OWN_TYPE.fullmatch(parameter)
     if match is not None:
         is_class = match.re is _CONTROLLER_TYPE or (_ROS1_CLASS.fullmatch(old) and _ROS1_CLASS.fullmatch(new))
