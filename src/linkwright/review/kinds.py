@@ -155,6 +155,7 @@ _RULES = (
         phrase("launch file removed"),
         phrase("launch files and users that start the file do not find it"),
         launch_contents,
+        shows_removed=True,
     ),
     KindRule(
         SubjectKind.INTERFACE,

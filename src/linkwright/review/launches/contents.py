@@ -1,4 +1,4 @@
-"""Summarize an added launch file in one line."""
+"""Summarize an added or removed launch file in one line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.argument_uses import read_code, uses_argument
+from linkwright.review.launches.included import STARTING_KINDS
 from linkwright.review.launches.outlines import (
     IGNORED_TAG,
     PASSES_ALL_ARGUMENTS,
@@ -33,7 +34,8 @@ _MAX_SETTINGS = 8
 def launch_contents(version: Version, path: str) -> Phrase | None:
     """Summarize the actions of a launch file, or return None if it has none.
 
-    The summary lists nodes, processes, includes, parameters, event handlers and arguments.
+    The summary lists nodes, processes, includes, parameters, event handlers and arguments. Of a removed file, it only
+    lists what the file started.
 
     Args:
         version: the version that contains the file.
@@ -43,6 +45,13 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
         LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
     """
     outline = read_outline(version.file(path), version.root)
+    if version.is_old:
+        started = [
+            _format_title_with_settings(entry, ()) if entry.kind == "include" else format_title(entry)
+            for entry in outline.entries
+            if entry.kind in STARTING_KINDS
+        ]
+        return joined_first(list(dict.fromkeys(started)), MAX_NAMES) if started else None
     unused = _find_unused_arguments(version.file(path), outline)
     entries = [
         entry
