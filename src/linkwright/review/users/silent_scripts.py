@@ -21,5 +21,5 @@ def find_silent_scripts(versions: Versions, changed_files: Sequence[ChangedFile]
         old = list_commands(versions.old, file.old_path)
         if old is not None and not any(split_content_lines(versions.new.text(file.new_path))):
             text = phrase("runs no command any more; removed: {items}", items=old)
-            reason = phrase("what the script started no longer starts")
+            reason = phrase("the programs that the script started no longer start")
             yield file.new_path, Change(text, Effect.BREAKING, reason, Location(file.new_path, 1, 1))
