@@ -28,7 +28,7 @@ from linkwright.review.files.lists_of_mappings import (
 )
 from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
-from linkwright.review.files.moved_nodes import find_node_move
+from linkwright.review.files.moved_nodes import find_group_move, find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -277,6 +277,10 @@ def _compare_values(
         node_move = None if reason is None else find_node_move(pair, name, values_below)
         if node_move is not None:
             pair.changes.append(Change(node_move, location=location))
+            continue
+        group_move = None if reason is None else find_group_move(pair, name, values_below)
+        if group_move is not None:
+            pair.changes.append(Change(group_move, Effect.BREAKING, reason, location))
             continue
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 
