@@ -34,8 +34,7 @@ _MAX_SETTINGS = 8
 def launch_contents(version: Version, path: str) -> Phrase | None:
     """Summarize the actions of a launch file, or return None if it has none.
 
-    The summary lists nodes, processes, includes, parameters, event handlers and arguments. Of a removed file, it only
-    lists what the file started.
+    The summary lists nodes, processes, includes, parameters, event handlers and arguments.
 
     Args:
         version: the version that contains the file.
@@ -45,13 +44,6 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
         LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
     """
     outline = read_outline(version.file(path), version.root)
-    if version.is_old:
-        started = [
-            _format_title_with_settings(entry, ()) if entry.kind == "include" else format_title(entry)
-            for entry in outline.entries
-            if entry.kind in STARTING_KINDS
-        ]
-        return joined_first(list(dict.fromkeys(started)), MAX_NAMES) if started else None
     unused = _find_unused_arguments(version.file(path), outline)
     entries = [
         entry
@@ -61,6 +53,23 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     sorted_entries = sorted(entries, key=lambda entry: _SHOWN_KINDS.index(entry.kind))
     titles = list(dict.fromkeys(_format_title_with_settings(entry, unused) for entry in sorted_entries))
     return joined_first(titles, MAX_NAMES) if titles else None
+
+
+def started_contents(version: Version, path: str) -> Phrase | None:
+    """Summarize an added launch file, or list what a removed one started; None if there is nothing to list.
+
+    Raises:
+        LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
+    """
+    if not version.is_old:
+        return launch_contents(version, path)
+    outline = read_outline(version.file(path), version.root)
+    started = [
+        _format_title_with_settings(entry, ()) if entry.kind == "include" else format_title(entry)
+        for entry in outline.entries
+        if entry.kind in STARTING_KINDS
+    ]
+    return joined_first(list(dict.fromkeys(started)), MAX_NAMES) if started else None
 
 
 def _find_unused_arguments(file: Path, outline: LaunchOutline) -> frozenset[str]:
