@@ -352,7 +352,7 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
 def _have_other_values(pair: FilePair, failures: Sequence[_Failure]) -> bool:
     """Return whether the callers of the new version pass other values than before, with all of which it fails.
 
-    The old version could be read with the values that its callers passed. A missing package is no certain failure.
+    The old version could be read with the values that its callers passed. A missing package is not a certain failure.
     """
     old = [failure for failure in failures if failure.values.is_of_old]
     new = [failure for failure in failures if failure.values.is_of_new]
