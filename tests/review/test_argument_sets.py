@@ -228,3 +228,38 @@ def test_callers_that_pass_a_renamed_argument_are_compared_with_the_new_one(repo
     review_subject = subject(compare(repository), "arm/arm.urdf.xacro")
     assert review_subject.cases == ["arm_height:=2"]
     assert not any("origin" in sentence for sentence in sentences(review_subject))
+
+
+def test_a_robot_whose_callers_newly_pass_a_file_that_does_not_exist_can_no_longer_be_read(repository, compare):
+    launch, robot = "arm_description/launch/arm.launch.py", "arm_description/urdf/sized.urdf.xacro"
+    text = """<robot name="sized" xmlns:xacro="http://www.ros.org/wiki/xacro">
+      <xacro:arg name="file" default="$(find arm_description)/config/sizes.yaml"/>
+      <xacro:property name="sizes" value="${xacro.load_yaml('$(arg file)')}"/>
+      <link name="base"><visual><geometry><sphere radius="${sizes['arm']['radius']}"/></geometry></visual></link>
+    </robot>
+    """
+    call = """import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+from xacro import process_file
+
+def generate_launch_description():
+    folder = get_package_share_directory("arm_description")
+    file = os.path.join(folder, "urdf", "sized.urdf.xacro")
+    robot = process_file(file, mappings={"file": os.path.join(folder, "config", "NAME")}).toxml()
+    parameters = [{"robot_description": robot}]
+    node = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=parameters)
+    return LaunchDescription([node])
+"""
+    path = "arm_description/config/sizes.yaml"
+    repository.commit(
+        {**PACKAGE, robot: text, launch: call.replace("NAME", "sizes.yaml"), path: "arm:\n  radius: 0.1\n"}
+    )
+    repository.write({launch: call.replace("NAME", "made/sizes.yaml"), path: "leg:\n  radius: 0.1\n"})
+    found = subject(compare(repository), robot)
+    (change,) = found.changes
+    assert str(change.sentence).startswith("can no longer be read: ")
+    assert str(change.sentence).endswith("no such file: 'arm_description/config/made/sizes.yaml'")
+    assert str(change.reason) == f"these files fail: '{launch}'"
+    assert found.problems == []

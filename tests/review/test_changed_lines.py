@@ -97,3 +97,17 @@ def test_commands_of_ros_come_before_messages_and_pauses_in_a_long_added_script(
     repository.write({"arm/start.sh": "\n".join(["#!/bin/sh", *lines])})
     state = str(compare(repository).file_states["arm/start.sh"])
     assert state.startswith("added: `ros2 launch arm arm.launch.py`, `kill 0`, `cleanup() {`, ")
+
+
+def test_a_script_whose_commands_become_comments_starts_nothing(repository, compare):
+    commands = [
+        "if [ $# -eq 0 ]; then exit 1; fi",
+        "declare -A pids",
+        *(f"python3 arm/{name}.py &" for name in "abcdef"),
+    ]
+    repository.commit({"start.sh": "\n".join(["#!/bin/bash", *commands, ""])})
+    repository.write({"start.sh": "\n".join(["# replaced", *(f"# {command}" for command in commands), ""])})
+    (line,) = breaking(compare(repository))
+    assert line.startswith("runs no command any more; removed: `python3 arm/a.py &`, `python3 arm/b.py &`")
+    repository.write({"start.sh": "\n".join(["#!/bin/bash", commands[-1], ""])})
+    assert breaking(compare(repository)) == []

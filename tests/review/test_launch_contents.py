@@ -312,3 +312,12 @@ def test_an_include_that_passes_all_arguments_is_told(repository, compare, value
     found = [sentence for item in result.subjects for sentence in sentences(item)]
     assert found == (["include of '$(find arm)/launch/b.launch': pass_all_args true added"] if is_told else [])
     assert not result.breaking_changes
+
+
+def test_a_removed_launch_file_is_told_with_what_it_started(repository, compare):
+    include = '<include file="$(find arm)/launch/b.launch"><arg name="name" value="left"/></include>'
+    repository.commit({PATH: f"<launch><arg name='a' default='1'/>{NODE}{include}</launch>\n", "a.txt": "a"})
+    repository.write({PATH: None})
+    assert breaking(compare(repository)) == [
+        "launch file removed: node 'cam/driver', include of '$(find arm)/launch/b.launch' (name left)"
+    ]

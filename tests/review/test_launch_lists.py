@@ -203,3 +203,22 @@ def test_fields_of_formatted_texts_have_their_values(review_changes, name, text)
 def test_a_list_and_a_sum_of_lists_with_the_same_items_are_equal(review_changes):
     found, _ = review_changes("arm.launch.py", COMMAND, "parameters=[file]", "parameters=[file] + []")
     assert found == []
+
+
+SHELL = """from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+from launch.substitutions import FindExecutable
+
+def generate_launch_description():
+    name = "{}"
+    set_state = ExecuteProcess(cmd=[[FindExecutable(name="ros2"), " lifecycle set /", name, " ", "active"]], shell=True)
+    return LaunchDescription([set_state, ExecuteProcess(cmd=[FindExecutable(name="router"), ["--to=", name]])])
+"""
+
+
+def test_list_in_a_command_is_one_text(review_changes):
+    changes, _ = review_changes("arm.launch.py", SHELL.format("front/arm"), "front/arm", "arm")
+    assert changes == [
+        "process 'ros2': command ros2 lifecycle set /front/arm active -> ros2 lifecycle set /arm active",
+        "process 'router': command [router, --to=front/arm] -> [router, --to=arm]",
+    ]

@@ -159,6 +159,16 @@ def test_arguments_are_renamed_only_if_their_names_or_the_places_of_their_values
     assert any(sentence.startswith("argument 'publish_tf' removed") for sentence in breaking(result)) != is_renamed
 
 
+def test_arguments_of_conditions_of_different_actions_are_not_renamed(repository, compare):
+    text = "<launch>{}<include file='$(find-pkg-share arm)/launch/{}.launch.xml' {}/></launch>\n"
+    old = text.format("<arg name='safety' default='true'/>", "safety", "if='$(var safety)'")
+    for file, is_renamed in (("hands", False), ("safety", True)):
+        repository.commit({"arm/launch/a.launch.xml": old})
+        new = text.format("<arg name='mockup' default='true'/>", file, "if='$(var mockup)'")
+        repository.write({"arm/launch/a.launch.xml": new})
+        assert ("argument 'safety' renamed to 'mockup'" in breaking(compare(repository))) is is_renamed
+
+
 FRAMES = """<launch>
   <arg name="robot" default="amy"/>
   <node pkg="arm" type="start.sh" name="simulator" args="$(arg robot)">

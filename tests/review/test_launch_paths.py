@@ -61,6 +61,23 @@ def test_launch_file_that_checks_which_files_exist_may_name_a_missing_one(reposi
 
 
 @pytest.mark.parametrize(
+    ("statement", "may_exist"),
+    [
+        ("with open(file) as stream: load(stream)", False),
+        ("with open(file, 'w') as stream: save(stream)", True),
+        ("shutil.copyfile('a.yaml', file)", True),
+        ("try: load(open(file))\n    except OSError: file = None", True),
+    ],
+)
+def test_launch_file_that_only_reads_files_needs_the_missing_one(repository, compare, statement, may_exist):
+    reading = PYTHON.replace("    return", f"    {statement}\n    return")
+    repository.commit({**FILES, "arm/launch/arm.launch.py": reading})
+    repository.write({"arm/launch/arm.launch.py": reading.replace("arm.yaml", "robot.yaml")})
+    told = ["names 'config/robot.yaml' of 'arm', which does not exist"]
+    assert breaking(compare(repository)) == ([] if may_exist else told)
+
+
+@pytest.mark.parametrize(
     "changes",
     [
         {"arm/config/robot.yaml": "a: 1\n"},
@@ -168,9 +185,12 @@ def make():
 """
 
 
-@pytest.mark.parametrize(("text", "kind"), [(PYTHON, "launch file"), (HELPER, "functions for launch files")])
-def test_python_file_with_a_launch_description_is_a_launch_file_whatever_its_name(repository, compare, text, kind):
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [(PYTHON, "launch file removed: node 'a/b'"), (HELPER, "functions for launch files removed")],
+)
+def test_python_file_with_a_launch_description_is_a_launch_file_whatever_its_name(repository, compare, text, line):
     repository.commit({**FILES, "arm/launch/simulation.py": text})
     repository.write({"arm/launch/simulation.py": None})
     (sentence,) = sentences(subject(compare(repository), "arm/launch/simulation.py"))
-    assert sentence == f"{kind} removed"
+    assert sentence == line

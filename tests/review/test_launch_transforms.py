@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import subject
+from tests.review.conftest import sentences, subject
 
 STATIC = '<node pkg="tf" type="static_transform_publisher" name="still" args="0 0 0 0 0 0 /PARENT /CHILD 20"/>'
 FAKE = '<node pkg="fake_localization" type="fake_localization" name="fake"/>'
@@ -174,3 +174,19 @@ def test_robot_of_another_launch_file_may_have_the_frame_of_a_sensor(repository,
     repository.write({path: text.replace("FRAME", "camera")})
     (change,) = subject(compare(repository), path).changes
     assert str(change.reason) == "programs that use the name 'link' do not find it"
+
+
+def test_a_transform_that_moves_to_two_files_has_its_new_values(repository, compare):
+    text = "<launch>{}</launch>\n"
+    node = "<node pkg='tf2_ros' exec='static_transform_publisher' args='--x {} --frame-id gps --child-frame-id base'/>"
+    paths = [f"arm/launch/{name}.launch.xml" for name in ("all", "left", "right")]
+    repository.commit({paths[0]: text.format(node.format(1)), paths[1]: text.format(""), paths[2]: text.format("")})
+    repository.write({path: text.format(node.format(x)) for path, x in zip(paths[1:], (1, 3), strict=True)})
+    repository.write({paths[0]: text.format("")})
+    result = compare(repository)
+    title = "node 'tf2_ros/static_transform_publisher' of 'base' moved"
+    (lost,) = subject(result, paths[0]).changes
+    assert str(lost.sentence) == f"{title} to {paths[1]} or {paths[2]}"
+    assert str(lost.reason).startswith(f"where the file is started without {paths[1]} or {paths[2]}, the transform")
+    assert sentences(subject(result, paths[1])) == [f"{title} from {paths[0]}"]
+    assert sentences(subject(result, paths[2])) == [f"{title} from {paths[0]}; x 1 -> 3"]

@@ -33,6 +33,17 @@ def test_a_list_of_numbers_has_an_order():
     assert str(text) == "map [0, 1, 2, 3, 4, 5] -> [5, 6, 4, 3, 2, 1]"
 
 
+def test_changed_numbers_of_a_long_list_have_their_indexes():
+    numbers = [f"{number / 8}" for number in range(20)]
+    old = f"[{', '.join(numbers)}]"
+    new = old.replace(" 0.25,", " 0.3,").replace(" 2.0,", " -1,")
+    assert str(change_text("points", old, new)) == "points: [2] 0.25 -> 0.3, [16] 2.0 -> -1"
+    longer = new.replace("]", ", 7.0]")
+    assert str(change_text("points", old, longer)).startswith("points [0.0, 0.125, 0.25,")
+    others = old.replace("5,", "6,")
+    assert str(change_text("points", old, others)) == f"points {old} -> {others}"
+
+
 def test_long_text_of_words_has_the_replaced_added_and_removed_ones():
     words = [f"/camera/topic_{number}" for number in range(20)]
     new = ["/first", *words[:5], "/lidar/points", *words[6:12], *words[13:]]

@@ -75,3 +75,32 @@ def test_spawner_of_a_group_that_is_not_a_controller_started_nothing(repository,
     repository.commit({"arm/launch/arm.launch": f"<launch>{node}</launch>\n", "arm/config/arm.yaml": settings})
     repository.write({"arm/launch/arm.launch": "<launch/>\n"})
     assert bool(breaking(compare(repository))) == is_breaking
+
+
+SPAWNING = """<launch>
+  <node pkg="controller_manager" exec="ros2_control_node"><param from="$(find-pkg-share arm)/{file}"/></node>
+  {spawner}
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "is_breaking"),
+    [
+        ("hand_controller", "arm.yaml", False),
+        ("hand_controller -p hand.yaml", "arm.yaml", True),
+        ("hand_controller", "of_another_package.yaml", True),
+        ("arm_controller", "arm.yaml", True),
+    ],
+)
+def test_spawner_of_a_controller_that_no_parameter_file_configures_started_nothing(
+    repository, compare, name, file, is_breaking
+):
+    settings = "controller_manager:\n  ros__parameters:\n    arm_controller:\n      type: a/B\n"
+    node = f"<node pkg='controller_manager' exec='spawner' args='{name}'><remap from='/a/b' to='/c'/></node>"
+    path = "arm/launch/arm.launch.xml"
+    repository.commit({path: SPAWNING.format(spawner=node, file=file), "arm/arm.yaml": settings})
+    repository.write({path: SPAWNING.format(spawner="", file=file)})
+    assert bool(breaking(compare(repository))) == is_breaking
+    repository.write({path: SPAWNING.format(spawner=node.replace("<remap from='/a/b' to='/c'/>", ""), file=file)})
+    assert breaking(compare(repository)) == []

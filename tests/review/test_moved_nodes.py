@@ -28,7 +28,7 @@ def generate_launch_description():
     [
         ("navigator.yaml", NAVIGATOR, f"navigator moved to {NEW_PATH}", False),
         ("navigator.yaml", NAVIGATOR.replace("10", "30"), f"navigator moved to {NEW_PATH}, with rate 10 -> 30", False),
-        ("all.yaml", NAVIGATOR, "navigator removed: rate 10, frame map, topic /odom", True),
+        ("all.yaml", NAVIGATOR, f"navigator moved to {NEW_PATH} with the same values", True),
         ("navigator.yaml", NAVIGATOR.replace("rate: 10", "speed: 1"),
          "navigator removed: rate 10, frame map, topic /odom", True),
     ],
@@ -40,6 +40,19 @@ def test_a_node_moves_to_a_file_that_a_launch_file_loads(repository, compare, lo
     result = compare(repository)
     assert sentences(subject(result, PATH)) == [line]
     assert (line in breaking(result)) is is_breaking
+
+
+def test_a_group_without_a_node_that_moves_to_another_file_has_the_values_that_differ(repository, compare):
+    group, rest = "arm:\n  mass: 2.5\n  width: 0.1\n  clearance: 0.2\n", "base:\n  mass: 1\n  height: 2\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: group + rest})
+    for text, ending in (
+        (group, " with the same values"),
+        (f"{group}  depth: 0.02\n".replace("0.1", "0.3"), ", with width 0.1 -> 0.3, depth 0.02 added"),
+    ):
+        repository.write({PATH: rest, NEW_PATH: text})
+        assert breaking(compare(repository)) == [f"arm moved to {NEW_PATH}{ending}"]
+    repository.write({PATH: rest, NEW_PATH: group.replace("clearance", "gap")})
+    assert breaking(compare(repository)) == ["arm removed: mass 2.5, width 0.1, clearance 0.2"]
 
 
 @pytest.mark.parametrize(

@@ -121,3 +121,16 @@ def test_a_package_that_an_added_include_lacks_is_told_once(repository, compare)
     repository.write({PATH: new.replace("/dock.launch", "/other.launch")})
     reasons = [str(change.reason) for change in subject(compare(repository), PATH).changes if change.reason is not None]
     assert len([reason for reason in reasons if "'docking'" in reason]) == 1
+
+
+def test_a_package_for_which_another_file_of_the_package_looked_is_not_new(repository, compare):
+    path, robot = "arm/urdf/arm.urdf.xacro", "<robot name='arm'><property name='a' value='$(find {})'/></robot>\n"
+    for other, is_new in (
+        ("<launch/>\n", True),
+        ("<launch><arg name='a' default='$(find docking)'/></launch>\n", False),
+    ):
+        files = {"arm/package.xml": PACKAGE_XML, "arm/launch/other.launch": other}
+        repository.commit({path: robot.format("rails"), **files})
+        repository.write({path: robot.format("docking")})
+        told = "looks for files of 'docking' instead of 'rails', but package.xml does not name 'docking'"
+        assert (told in breaking(compare(repository))) is is_new

@@ -413,18 +413,34 @@ def test_list_of_plugins_that_was_a_text_breaks_nobody(review_changes, old, new,
     assert bool(found_breaking) is is_breaking
 
 
-STAMPED = "    enable_stamped_cmd_vel: {}\n"
-
-
 @pytest.mark.parametrize(
-    ("old", "value", "is_breaking"), [(True, "true", True), (True, "false", False), (False, "true", False)]
+    ("old", "value", "is_breaking"),
+    [
+        (True, "enable_stamped_cmd_vel: true", True),
+        (True, "enable_stamped_cmd_vel: false", False),
+        (False, "enable_stamped_cmd_vel: true", False),
+        (True, "publish_stamped_twist: true", True),
+        (True, "use_stamped_vel: true", False),
+        (True, "use_stamped_vel: false", True),
+    ],
 )
 def test_velocity_commands_of_a_node_that_newly_have_a_header_are_breaking(review_changes, old, value, is_breaking):
     other = "docking_server:\n  ros__parameters:\n    rate: 5\n"
     text = SERVERS.format(checkers="[near]", rate=10)
-    found, found_breaking = review_changes(other + text if old else other, other + text + STAMPED.format(value))
+    new = f"{other}{text}    {value}\n"
+    found, found_breaking = review_changes(other + text if old else other, new)
     assert found
     assert bool(found_breaking) is is_breaking
+    if old:
+        assert bool(review_changes(new, other + text)[1]) is is_breaking
+
+
+def test_a_type_of_a_controller_that_no_package_has_is_repaired(review_changes):
+    text = "controller_manager:\n  ros__parameters:\n    base:\n      type: {}/OmniController\n"
+    for package, is_breaking in (("ros2_controllers", False), ("omni_controllers", True)):
+        found, found_breaking = review_changes(text.format(package), text.format("omni_controller"))
+        assert found
+        assert bool(found_breaking) is is_breaking
 
 
 ROS1_BASE = """base_control:

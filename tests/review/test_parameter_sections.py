@@ -228,3 +228,15 @@ def test_an_added_list_of_mappings_is_shown_with_its_items(repository, compare):
     assert line.startswith("parameter file added: ")
     assert "/map" in line
     assert "/camera" in line
+
+
+def test_plugins_topics_and_frames_of_a_long_added_file_come_first(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    sizes = "".join(f"    size_{number}: {number + 1}\n" for number in range(40))
+    names = "    plugins: [walls]\n    walls:\n      plugin: a/Walls\n      scan_topic: /scan\n    global_frame: map\n"
+    others = "".join(f"other_{number}:\n  ros__parameters:\n    use_sim_time: true\n" for number in range(4))
+    repository.write({"arm/config/map.yaml": f"map:\n  ros__parameters:\n{sizes}{names}{others}"})
+    (line,) = sentences(subject(compare(repository), "arm/config/map.yaml"))
+    first = "plugins [walls], walls.plugin a/Walls, walls.scan_topic /scan, global_frame map, size_0 1"
+    assert line.startswith(f"parameter file added: parameters of map ({first}, ")
+    assert "size_23 24 and 16 more)" in line  # the other nodes have one value each

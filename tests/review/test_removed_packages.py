@@ -59,7 +59,7 @@ def test_what_other_packages_lose_has_lines_of_its_own(repository, compare):
     repository.commit({**REMOVED, "robot/launch/robot.launch.xml": None})
     removed = breaking(compare(repository, "HEAD~1..HEAD"))
     assert len(removed) == 2
-    assert "launch file removed" in removed
+    assert "launch file removed: node 'robot_driver/driver'" in removed
 
 
 def test_file_that_moves_to_another_package_is_no_content_of_the_removed_one(repository, compare):

@@ -39,10 +39,12 @@ _SHELL = re.compile(rb"#![^\n]*/(?:env[ \t]+)?(?:ba|z|da)?sh\b")
 _UNIT_COMMAND = re.compile(r"Exec\w+=")
 """The lines of a unit of systemd that start programs."""
 _ROS_COMMAND = re.compile(r"\b(?:ros2 (?:run|launch)|rosrun|roslaunch)\b.*")
+_PYTHON_COMMAND = re.compile(r"\bpython[\d.]* (?:-u )?\S+\.py\b")
 _SECONDARY_COMMAND = re.compile(
-    r"(?:echo|printf|sleep|wait|exit|trap|clear|set|return)\b.*|[{}]|\w+ ?\(\) ?\{?|(?:fi|done|else|then|do|esac);?"
+    r"(?:echo|printf|sleep|wait|exit|trap|clear|set|return|if|elif|for|while|until|case|declare|local)\b.*"
+    r"|[{}]|\w+ ?\(\) ?\{?|(?:fi|done|else|then|do|esac);?"
 )
-"""A line of a script that writes a message, waits, or has no command."""
+"""A line of a script that writes a message, waits, tests a condition, or has no command."""
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
@@ -149,10 +151,10 @@ def _find_started_program(line: str) -> str:
 
 
 def _find_rank(line: str) -> int:
-    """Return the rank of a line of a script: commands of ROS come first, messages and pauses last."""
+    """Return the rank of a line of a script: programs of ROS and Python come first, messages and pauses last."""
     if _SECONDARY_COMMAND.fullmatch(line):
         return 2
-    return 0 if _ROS_COMMAND.search(line) else 1
+    return 0 if _ROS_COMMAND.search(line) or _PYTHON_COMMAND.search(line) else 1
 
 
 def _format_first(lines: list[str]) -> Phrase:

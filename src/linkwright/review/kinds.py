@@ -45,7 +45,7 @@ from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files,
 from linkwright.review.files.templates import TEMPLATE_SUFFIXES
 from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
 from linkwright.review.given_names import compare_parameters_with_sources
-from linkwright.review.launches.contents import launch_contents
+from linkwright.review.launches.contents import launch_contents, started_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
 from linkwright.review.launches.helper_modules import compare_launch_helpers
 from linkwright.review.launches.spawned_models import find_spawned_models
@@ -154,7 +154,8 @@ _RULES = (
         phrase("launch file added"),
         phrase("launch file removed"),
         phrase("launch files and users that start the file do not find it"),
-        launch_contents,
+        started_contents,
+        shows_removed=True,
     ),
     KindRule(
         SubjectKind.INTERFACE,

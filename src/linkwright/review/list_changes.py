@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts
 from linkwright.review.word_changes import compare_words
 
@@ -12,6 +12,10 @@ EMPTY = "''"
 """An empty value as users write it."""
 _LONG_LIST = 4
 """The maximum number of items of lists that are shown in full, unless they are too long."""
+_MANY_NUMBERS = 16
+"""The maximum number of items of lists that a reader can compare."""
+_MAX_CHANGED_ITEMS = 8
+"""The maximum number of changed items of a long list that are shown alone."""
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _WORD = re.compile(r"(?:\$\((?:[^()]|\([^()]*\))*\)|\S)+")
 """A word of a line, in which a substitution such as ``$(var side)`` may have blanks."""
@@ -40,6 +44,10 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     is_short = min(len(old_items), len(new_items)) <= _LONG_LIST and not is_cut
     has_order = are_lists and all(map(_NUMBER.fullmatch, (*old_items, *new_items)))
     if is_short or has_order or not is_set or not (added or removed):
+        is_long = is_cut or min(len(old_items), len(new_items)) > _MANY_NUMBERS
+        changes = _find_changed_items(old_items, new_items) if is_long else []
+        if changes:
+            return phrase("{parameter}: {changes}", parameter=name, changes=joined(changes))
         return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
     added_text = ", ".join(item for item in new_items if item in added)
     removed_text = ", ".join(item for item in old_items if item in removed)
@@ -50,6 +58,14 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     return phrase(
         "{parameter}: {added} added, {removed} removed", parameter=name, added=added_text, removed=removed_text
     )
+
+
+def _find_changed_items(old: list[str], new: list[str]) -> list[str]:
+    """Return the items that differ between two lists of the same length; none if there are many."""
+    changed = [number for number, item in enumerate(new) if len(old) == len(new) and item != old[number]]
+    if len(changed) > _MAX_CHANGED_ITEMS:
+        return []
+    return [f"[{number}] {old[number]} -> {new[number]}" for number in changed]
 
 
 def list_items(text: str) -> list[str]:

@@ -16,6 +16,7 @@ from functools import cached_property
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Union
+from linkwright.packages.readers.import_aliases import replace_import_aliases
 
 
 class UnknownType(Enum):
@@ -69,7 +70,7 @@ class PythonFile:
         source: the text of the file.
 
     Attributes:
-        tree: the syntax tree.
+        tree: the syntax tree, with the own names of imported classes and functions in place of other names.
 
     Raises:
         SyntaxError: the text is not valid Python.
@@ -79,6 +80,7 @@ class PythonFile:
     def __init__(self, source: SourceText) -> None:
         self.source = source
         self.tree = parse_python(source.text)
+        replace_import_aliases(self.tree)
 
     @cached_property
     def _assignments(self) -> dict[str, ast.expr | None]:

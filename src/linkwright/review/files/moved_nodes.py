@@ -1,8 +1,8 @@
-"""Find nodes whose parameters move to another parameter file, which a launch file loads, or to a launch file."""
+"""Find nodes whose parameters, and other parts whose values, move to another parameter file or to a launch file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
@@ -14,6 +14,8 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
 _PARAMETERS = "ros__parameters"
+_MIN_VALUES = 3
+"""The minimum number of values by which a part in another file is recognized."""
 _MIN_SHARE = 0.5
 """The minimum share of the values that stay equal."""
 
@@ -34,23 +36,51 @@ def find_node_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -
     if launch_file is not None:
         return phrase("{old} moved to {name}", old=name, name=launch_file)
     for path in list_changed_files(pair):
-        if path == pair.new_path or not is_named_by_launch_file(versions.new, path):
-            continue
-        found = _read_values(versions.new, path)
-        old_path = next((file.old_path for file in versions.changed_files if file.new_path == path), None)
-        known = _read_values(versions.old, old_path) if old_path is not None else {}
-        if not values.keys() <= found.keys() or not values.keys().isdisjoint(known):
-            continue
-        changed = [item for item, value in values.items() if value.text != found[item].text]
-        if len(changed) > (1 - _MIN_SHARE) * len(values):
-            continue
-        text = phrase("{old} moved to {name}", old=name, name=path)
-        if not changed:
-            return text
-        names = {item: item.removeprefix(name).lstrip(".").removeprefix(f"{_PARAMETERS}.") for item in changed}
-        items = [str(change_text(names[item], values[item].shown, found[item].shown)) for item in changed]
-        return phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES))
+        items = _compare_part(pair, name, values, path) if is_named_by_launch_file(versions.new, path) else None
+        if items is not None:
+            text = phrase("{old} moved to {name}", old=name, name=path)
+            return (
+                phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES)) if items else text
+            )
     return None
+
+
+def find_group_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return the line about a removed part that another changed file newly has; None if no file has it.
+
+    Args:
+        pair: both versions of the file that loses the part.
+        name: the path of the removed part.
+        values: the removed values by path.
+    """
+    for path in list_changed_files(pair) if len(values) >= _MIN_VALUES else ():
+        items = _compare_part(pair, name, values, path)
+        if items is not None:
+            text = _describe_move(name, path, items)
+            return text if items else phrase("{change} with the same values", change=text)
+    return None
+
+
+def _describe_move(name: str, path: str, items: Sequence[Phrase]) -> Phrase:
+    text = phrase("{old} moved to {name}", old=name, name=path)
+    return phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES)) if items else text
+
+
+def _compare_part(pair: FilePair, name: str, values: Mapping[str, YamlValue], path: str) -> list[Phrase] | None:
+    """Return the values that differ in a part that moved to a file, or None if the file does not newly have it."""
+    versions = pair.versions
+    found = _read_values(versions.new, path) if path != pair.new_path else {}
+    old_path = next((file.old_path for file in versions.changed_files if file.new_path == path), None)
+    known = _read_values(versions.old, old_path) if old_path is not None else {}
+    if not values.keys() <= found.keys() or not values.keys().isdisjoint(known):
+        return None
+    changed = [item for item, value in values.items() if value.text != found[item].text]
+    if len(changed) > (1 - _MIN_SHARE) * len(values):
+        return None
+    added = [item for item in found if item.startswith(f"{name}.") and item not in values and item not in known]
+    names = {item: item.removeprefix(name).lstrip(".").removeprefix(f"{_PARAMETERS}.") for item in (*changed, *added)}
+    items = [change_text(names[item], values[item].shown, found[item].shown) for item in changed]
+    return items + [phrase("{name} {value} added", name=names[item], value=found[item].shown) for item in added]
 
 
 def _find_setting_file(pair: FilePair, node: str, values: Iterable[str]) -> str | None:

@@ -28,7 +28,7 @@ from linkwright.review.files.lists_of_mappings import (
 )
 from linkwright.review.files.lost_groups import find_group_reason, find_lost_items
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
-from linkwright.review.files.moved_nodes import find_node_move
+from linkwright.review.files.moved_nodes import find_group_move, find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -59,6 +59,8 @@ _MAX_VALUES = 32
 """The maximum number of values in the line about an added file, divided among the nodes or keys."""
 _NEUTRAL_VALUE = re.compile(r" (?:[-+]?0*\.?0*(?:e[-+]?\d+)?|''|\[\]|\{\}|null|~)$")
 """A value of zero, or none. Recorded messages have many of them, which say less than the others."""
+_TELLING_NAME = re.compile(r"(?:\w+_)?(?:plugins?|plugin_names|topic|frame|frame_id|observation_sources)(?= )")
+"""A name of a plugin, topic or frame before its value."""
 _MIN_VALUES_OF_PART = 3
 _ITEM = re.compile(r"\[[^\[\]]+\](?=\.)")
 """The beginning of the path of a value in an item of a list at the root."""
@@ -152,10 +154,10 @@ def _format_list(root: yaml.SequenceNode) -> Phrase | None:
 
 def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     """Return the names of nodes or keys with their first values."""
-    limit = max(_MIN_VALUES_OF_PART, _MAX_VALUES // len(parts))
+    limit = _find_limit([len(values) for values in parts.values()])
     listed = {part: _list_values(part, values) for part, values in parts.items()}
     ranks = {part: _rank_values(items) for part, items in listed.items()}
-    telling = {part: part_ranks.count(0) for part, part_ranks in ranks.items()}
+    telling = {part: sum(rank <= 0 for rank in part_ranks) for part, part_ranks in ranks.items()}
     texts: list[Phrase] = []
     for part, values in parts.items():
         items = [shorten_middle(item, _MAX_VALUE_CHARACTERS) for item in listed[part]]
@@ -169,13 +171,23 @@ def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     return joined_first(texts, MAX_NAMES)
 
 
+def _find_limit(counts: Sequence[int]) -> int:
+    """Return the number of values of each part that are shown: more if other parts have only a few."""
+    limit = max(_MIN_VALUES_OF_PART, _MAX_VALUES // len(counts))
+    while limit < max(counts) and sum(min(count, limit + 1) for count in counts) <= _MAX_VALUES:
+        limit += 1
+    return limit
+
+
 def _rank_values(items: Sequence[str]) -> list[int]:
-    """Return how little each value of a long list tells: those that other parts repeat, and zeros at last."""
+    """Return how little each value of a long list tells: plugins, topics and frames first, zeros at last.
+
+    Before the zeros are the values that other parts repeat.
+    """
     ends = [item[item.rfind(".", 0, item.find(" ")) + 1 :] for item in items]
     counts = Counter(ends)
-    return [
-        2 if _NEUTRAL_VALUE.search(item) else 1 if counts[end] > 1 else 0 for item, end in zip(items, ends, strict=True)
-    ]
+    ranks = [2 if _NEUTRAL_VALUE.search(item) else int(counts[end] > 1) for item, end in zip(items, ends, strict=True)]
+    return [-1 if _TELLING_NAME.match(end) else rank for end, rank in zip(ends, ranks, strict=True)]
 
 
 def _compose_root(text: str) -> yaml.Node | None:
@@ -278,6 +290,10 @@ def _compare_values(
         node_move = None if reason is None else find_node_move(pair, name, values_below)
         if node_move is not None:
             pair.changes.append(Change(node_move, location=location))
+            continue
+        group_move = None if reason is None else find_group_move(pair, name, values_below)
+        if group_move is not None:
+            pair.changes.append(Change(group_move, Effect.BREAKING, reason, location))
             continue
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 

@@ -55,6 +55,8 @@ _CLASS_SEPARATOR = re.compile(r"/|::")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
 """The parameters that name controllers which a program loads or commands."""
+_METAPACKAGES = ("ros_controllers", "ros2_controllers")
+"""Packages without controllers of their own, which others have."""
 _ROS1_CLASS = re.compile(r"\w+/\w+")
 """The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
@@ -65,8 +67,10 @@ _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
-_UNSTAMPED_BY_DEFAULT = "enable_stamped_cmd_vel"
-"""The parameter of the nodes of Nav2 with velocity commands, which is false by default in most releases."""
+_UNSTAMPED_BY_DEFAULT = ("enable_stamped_cmd_vel", "publish_stamped_twist", "stamped")
+"""The parameters of Nav2's nodes with velocity commands, teleop_twist_joy and teleop_twist_keyboard.
+
+They are false by default (that of Nav2 in most releases)."""
 _CLOCK_PARAMETER = "use_sim_time"
 """The parameter of all nodes that launch files give, too."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
@@ -176,10 +180,9 @@ class NameRules:
         """Return the reason why adding a parameter is breaking, or None if it is not. A new node is not breaking."""
         if _is_nested(parameter) and not any(map(_is_nested, self._old)):
             return phrase("no node gets parameters below a second '{name}'", name=_PARAMETERS_KEY)
-        if parameter.endswith(f".{_UNSTAMPED_BY_DEFAULT}") and value.lower() == "true":
-            node = find_node_name(parameter)
-            if node is not None and node not in self._added_nodes:
-                return phrase("the message type of a topic changes between one with and one without a header")
+        node = find_node_name(parameter)
+        if node is not None and node not in self._added_nodes and _changes_header(parameter, value):
+            return phrase("the message type of a topic changes between one with and one without a header")
         return None
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
@@ -190,7 +193,7 @@ class NameRules:
         motion = _MOTION.match(parameter)
         if motion is not None and motion["name"] not in self._new_motions:
             return name_reason(motion["name"])
-        if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
+        if _changes_header(parameter, old) and self._has_node(parameter):
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None and controller["controller"] not in self._new_controllers:
@@ -290,6 +293,14 @@ class NameRules:
         return node is not None and any(matches_node(other, node) for other in self._new_nodes)
 
 
+def _changes_header(parameter: str, value: str) -> bool:
+    """Return whether a value is the opposite of a default that chooses messages with or without a header."""
+    name = parameter.rpartition(".")[2]
+    return (name == _STAMPED_BY_DEFAULT and value.lower() == "false") or (
+        name in _UNSTAMPED_BY_DEFAULT and value.lower() == "true"
+    )
+
+
 def offers_frame(parameter: str) -> bool:
     """Return whether a parameter names a frame that a node publishes for other programs."""
     if _ODOMETRY_FRAME.search(parameter) is not None:
@@ -362,7 +373,9 @@ def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
 
 
 def _find_typed_controller(parameter: str, old: str, new: str) -> str | None:
-    """Return the controller whose type a parameter sets; None for other parameters."""
+    """Return the controller whose type a parameter sets; None for other parameters and for types that never exist."""
+    if old.partition("/")[0] in _METAPACKAGES:
+        return None
     match = _CONTROLLER_TYPE.fullmatch(parameter) or _OWN_TYPE.fullmatch(parameter)
     if match is not None:
         is_class = match.re is _CONTROLLER_TYPE or (_ROS1_CLASS.fullmatch(old) and _ROS1_CLASS.fullmatch(new))

@@ -1,4 +1,4 @@
-"""Summarize an added launch file in one line."""
+"""Summarize an added or removed launch file in one line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.argument_uses import read_code, uses_argument
+from linkwright.review.launches.included import STARTING_KINDS
 from linkwright.review.launches.outlines import (
     FAILURES,
     IGNORED_TAG,
@@ -57,6 +58,23 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
             "{items}; an action has wrong arguments, so that the file fails", items=joined_first(titles, MAX_NAMES)
         )
     return joined_first(titles, MAX_NAMES) if titles else None
+
+
+def started_contents(version: Version, path: str) -> Phrase | None:
+    """Summarize an added launch file, or list what a removed one started; None if there is nothing to list.
+
+    Raises:
+        LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
+    """
+    if not version.is_old:
+        return launch_contents(version, path)
+    outline = read_outline(version.file(path), version.root)
+    started = [
+        _format_title_with_settings(entry, ()) if entry.kind == "include" else format_title(entry)
+        for entry in outline.entries
+        if entry.kind in STARTING_KINDS
+    ]
+    return joined_first(list(dict.fromkeys(started)), MAX_NAMES) if started else None
 
 
 def _find_unused_arguments(file: Path, outline: LaunchOutline) -> frozenset[str]:

@@ -49,7 +49,7 @@ from linkwright.review.launches.outlines import (
 from linkwright.review.launches.parameter_types import accepts_type
 from linkwright.review.launches.silent_programs import offers_no_names
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
-from linkwright.review.launches.spawned_names import is_other_group
+from linkwright.review.launches.spawned_names import is_other_group, is_unconfigured
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -173,7 +173,7 @@ def find_removal_reason(
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     if old.is_ros1 and not is_transform and all(is_other_group(name, old.root) for name in names):
         return None  # the spawner cannot start them
-    return _find_served_name_reason(entry, names, new)
+    return _find_served_name_reason(entry, names, old, new)
 
 
 def _is_spawner(entry: Entry) -> bool:
@@ -354,7 +354,9 @@ def find_setting_reason(
         kept = {name.strip("/") for name in new_names}
         removed = [name for name in old_names if name.strip("/") not in kept]
         is_unknown = any(_EXPRESSION in name for name in new_names)
-        return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
+        return (
+            _find_served_name_reason(entry, removed, old_outline, new_outline) if removed and not is_unknown else None
+        )
     return _find_parameter_reason(entry, setting, old, new, old_outline, new_outline)
 
 
@@ -560,15 +562,15 @@ def _find_names_in_arguments(entry: Entry, arguments: str | None, outline: Launc
     return find_served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolve(arguments or "")}, entry.span))
 
 
-def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
+def _find_served_name_reason(entry: Entry, names: list[str], old: LaunchOutline, new: LaunchOutline) -> Phrase | None:
     """Return the reason why a node that no longer serves names is breaking.
 
-    The result is None if another node serves the names.
+    The result is None if another node serves the names, or if the old version could not start them.
     """
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
     served = {name.strip("/") for other in others for name in _find_resolved_served_names(other, new)}
-    names = [name for name in names if name.strip("/") not in served]
+    names = [name for name in names if name.strip("/") not in served and not is_unconfigured(name, entry, old)]
     same = [other for other in others if other.name == entry.name]
     if not names or any(_EXPRESSION in name for other in same for name in _find_resolved_served_names(other, new)):
         return None

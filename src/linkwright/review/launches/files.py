@@ -9,7 +9,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import Phrase, counted, joined_first, phrase
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import count_shown
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
@@ -36,7 +36,8 @@ from linkwright.review.launches.include_trees import (
 )
 from linkwright.review.launches.included import (
     IncludedActions,
-    find_file_with_moved_action,
+    compare_moved_transform,
+    find_files_with_moved_action,
     find_moved_settings,
 )
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
@@ -224,7 +225,7 @@ def _report_unpaired_entries(
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
-        other_file = find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
+        other_file = next(find_files_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False), None)
         is_included, file = file is not None, file or other_file
         differences = None if file is None else find_moved_settings(entry, pair.versions, file, is_included=is_included)
         if file is not None and differences is not None:
@@ -256,7 +257,8 @@ def _report_unpaired_entries(
             text = text if reader is None else phrase("{change}; {path} uses it", change=text, path=reader)
             pair.add(text, location, reason)
             continue
-        file = find_file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
+        files = list(find_files_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True))
+        file = joined(files[:MAX_NAMES], last=" or ") if files else None
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=format_title(written), file=file)
         publisher = find_other_publisher(entry, old_included.outline, new_included.outline, pair.versions)
@@ -396,6 +398,10 @@ def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry
         lost: the names of the settings that it no longer has.
     """
     text = phrase("{entry} moved from {file}", entry=format_title(entry), file=file)
+    transform = compare_moved_transform(entry, pair.versions, file)
+    if transform is not None:
+        text = phrase("{change}; {note}", change=text, note=transform)
+        changed = replace(changed, settings={k: v for k, v in changed.settings.items() if k != "arguments"})
     settings = format_settings(changed)
     if settings is not None:
         text = phrase("{change}, now with {items}", change=text, items=settings)

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, Phrase
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
@@ -22,6 +22,7 @@ from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.static_transforms import compare_transforms
 from linkwright.review.launches.titles import find_served_names
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
@@ -428,8 +429,8 @@ def _find_package_file(package_folder: Path, path: str) -> Path | None:
     return files[0] if len(files) == 1 else None
 
 
-def find_file_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_removed: bool) -> str | None:
-    """Return the changed launch file to or from which an action moved, or None.
+def find_files_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_removed: bool) -> Iterator[str]:
+    """Yield the changed launch files to or from which an action moved.
 
     Args:
         entry: the action.
@@ -438,16 +439,28 @@ def find_file_with_moved_action(entry: Entry, versions: Versions, path: str, *, 
         is_removed: True if the new version of the file lacks the action, False if the old one does.
     """
     if entry.kind not in ("node", "include"):
-        return None
+        return
     key = _make_move_key(entry)
     for file in versions.changed_files[:_MAX_SEARCHED_FILES]:
         if path in (file.old_path, file.new_path) or not is_launch_file(file.path):
             continue
         old = _read_move_keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
         new = _read_move_keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()
-        if (key in new) > (key in old) if is_removed else (key in old) > (key in new):
-            return file.new_path if is_removed else file.old_path
-    return None
+        moved_path = file.new_path if is_removed else file.old_path
+        if moved_path and ((key in new) > (key in old) if is_removed else (key in old) > (key in new)):
+            yield moved_path
+
+
+def compare_moved_transform(entry: Entry, versions: Versions, old_path: str) -> Phrase | None:
+    """Return the change to the transform of a publisher that moved from another launch file.
+
+    The result is None if the arguments are equal or unknown, or the action does not publish a static transform.
+    """
+    old = next(iter(_find_old_actions(entry, versions, old_path)), None)
+    arguments = [None if other is None else other.settings.get("arguments") for other in (old, entry)]
+    if old is None or arguments[0] == arguments[1]:
+        return None
+    return compare_transforms(old.name, entry.name, arguments[0], arguments[1])
 
 
 def find_moved_settings(
@@ -466,9 +479,7 @@ def find_moved_settings(
         The action with only the settings that are new or have another value, and the names of the settings that it
         lost.
     """
-    outline = _try_read_outline(versions.old.file(old_path), versions.old.root)
-    key = _make_move_key(entry)
-    old = [] if outline is None else [other for other in outline.entries if _make_move_key(other) == key]
+    old = _find_old_actions(entry, versions, old_path)
     if not old or any(other.settings == entry.settings for other in old):
         return None
     changed = {name: value for name, value in entry.settings.items() if old[0].settings.get(name) != value}
@@ -478,6 +489,13 @@ def find_moved_settings(
         changed = {name: value for name, value in changed.items() if not _ARGUMENT.search(f"{value}{before[name]}")}
         lost = {name: value for name, value in lost.items() if not _ARGUMENT.search(f"{name}{value}")}
     return (replace(entry, settings=changed), list(lost)) if changed or lost else None
+
+
+def _find_old_actions(entry: Entry, versions: Versions, old_path: str) -> list[Entry]:
+    """Return the actions of the old version of a launch file that an action of another file may be."""
+    outline = _try_read_outline(versions.old.file(old_path), versions.old.root)
+    key = _make_move_key(entry)
+    return [] if outline is None else [other for other in outline.entries if _make_move_key(other) == key]
 
 
 def _make_move_key(entry: Entry) -> _MoveKey:

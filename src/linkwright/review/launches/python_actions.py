@@ -19,6 +19,7 @@ from linkwright.review.launches.outlines import (
     find_own_default,
 )
 from linkwright.review.launches.python_syntax import find_missing_argument, find_name_and_value, find_unknown_argument
+from linkwright.review.launches.substitution_texts import omit_program_search
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 from linkwright.review.launches.titles import shorten_command
 
@@ -203,12 +204,20 @@ class ActionReader:
         return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
 
     def _format_command(self, node: ast.expr | None) -> str:
-        """Return the command of a process, with the words that statements add to its list."""
+        """Return the command of a process, with the words that statements add to its list.
+
+        A list in the list is one text of several substitutions, such as a whole line of a shell.
+        """
         value = None if node is None else self.texts.resolve(node)
         added = [] if node is None else self._read_added_items(node)
-        if value is None or not isinstance(value.node, (ast.List, ast.Tuple)) or not added:
+        if value is None or not isinstance(value.node, (ast.List, ast.Tuple)):
             return self.texts.text(node)
-        return f"[{', '.join([*map(value.texts.text, value.node.elts), *added])}]"
+        if any(isinstance(item, ast.Starred) for item in value.node.elts) and not added:
+            return value.texts.text(value.node)
+        words = [omit_program_search(value.texts.format_joined(item)) for item in value.node.elts]
+        if len(words) == 1 and not added and " " in words[0] and isinstance(value.node.elts[0], (ast.List, ast.Tuple)):
+            return words[0]
+        return f"[{', '.join([*words, *added])}]"
 
     def _read_added_items(self, node: ast.expr) -> list[str]:
         """Return the texts of the items that statements add to the list of a name."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from linkwright.review.launches.matching import Match
-from linkwright.review.launches.outlines import READING, Entry, LaunchOutline
+from linkwright.review.launches.outlines import CONDITION, READING, Entry, LaunchOutline
 from linkwright.review.launches.titles import shorten_command
 
 _NAMED_KINDS = ("argument", "variable", READING)
@@ -107,11 +107,12 @@ def _are_similar(old: _Use, new: _Use) -> bool:
 
 
 def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
+    """Yield the settings with a variable. Conditions are alike anywhere, so theirs name the action, too."""
     pattern = re.compile(rf"\$\((?:var|arg|env|optenv) {re.escape(name)}[ )]")
     for entry in outline.entries:
         for setting, text in (("", entry.name), *entry.settings.items()):
             if pattern.search(text):
-                yield entry.kind, setting, text
+                yield entry.kind, f"{CONDITION} of {entry.name}" if setting == CONDITION else setting, text
 
 
 def rename_in_text(text: str, renamed: Mapping[str, str]) -> str:

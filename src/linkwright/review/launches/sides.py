@@ -61,7 +61,7 @@ _ALL_OUTPUTS: dict[str, set[str]] = {
 }
 """The topics, services and actions that well-known programs offer, except names with several parts.
 
-The programs use all other names of one word, or lack them.
+The programs use all other names of one word, or lack them. Those without an entry in their set offer nothing.
 """
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
@@ -105,7 +105,8 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
     if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
         return Side.USES
     outputs = _ALL_OUTPUTS.get(program)
-    if outputs is not None and re.fullmatch(r"/?\w+", name) and relative_name not in outputs | _LIBRARY_NAMES:
+    is_one_word = re.fullmatch(r"/?\w+", name) is not None
+    if outputs is not None and (is_one_word or not outputs) and relative_name not in outputs | _LIBRARY_NAMES:
         return Side.USES
     modules = () if root is None else _find_modules(root, program)
     package = program.partition("/")[0]

@@ -23,7 +23,7 @@ _PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", 
 _STRING_FUNCTIONS = (*_PATH_FUNCTIONS, "str", "getenv", "format")
 _TEXT_METHODS = ("lstrip", "removeprefix", "removesuffix", "replace", "rstrip", "strip")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
-"""A command with an explicit search for the program. The text omits the search, which is the default."""
+"""A command with an explicit search for the program."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
 """An expression that is only a quoted text."""
 
@@ -79,11 +79,15 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
     if function == "PythonExpression":
         return _format_expression("".join(map(part, split_pieces(python, first))))
     if function == "Command":
-        command = _PROGRAM_SEARCH.sub(r"\1", "".join(map(part, split_pieces(python, first))))
-        return f"$(command {command})"
+        return f"$(command {omit_program_search(''.join(map(part, split_pieces(python, first))))})"
     if function.endswith("LaunchDescriptionSource"):
         return "".join(map(part, split_pieces(python, first)))
     return None
+
+
+def omit_program_search(command: str) -> str:
+    """Return a command without an explicit search for its program, which is the default."""
+    return _PROGRAM_SEARCH.sub(r"\1", command)
 
 
 def _format_text_method(text: str, method: str, call: ast.Call) -> str | None:

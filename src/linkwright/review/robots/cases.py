@@ -346,8 +346,11 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
     combination.
     """
     names: dict[tuple[Fault | None, Fault | None], list[str]] = {}
+    is_replaced = _have_other_values(pair, failures)
     for failure in failures:
-        old = find_fault(failure.old, pair.versions.old)
+        if is_replaced and not failure.values.is_of_new:
+            continue  # the new callers pass other values, which fail as well
+        old = None if is_replaced else find_fault(failure.old, pair.versions.old)
         new = find_fault(failure.new, pair.versions.new)
         if new is not None and pair.versions.has_added_submodule and _needs_other_files(failure.new):
             new = new._replace(is_certain=False)  # the submodule may have them
@@ -362,12 +365,27 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
         elif not pair.cases:
             pair.add_unreadable(pair.versions.old, old)
     for (old, new), cases_of_fault in names.items():
-        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if new and pair.cases else ()
-        pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else (), callers)
+        is_told = bool(pair.cases) or is_replaced
+        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if new and is_told else ()
+        pair.add_faults(old, new, tuple(cases_of_fault) if is_told or len(names) > 1 else (), callers)
         if new is None:
             _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
     changed = (names_of_fault for faults, names_of_fault in names.items() if None in faults)
     pair.cases += (name for names_of_fault in changed for name in names_of_fault)
+
+
+def _have_other_values(pair: FilePair, failures: Sequence[_Failure]) -> bool:
+    """Return whether the callers of the new version pass other values than before, with all of which it fails.
+
+    The old version could be read with the values that its callers passed. A missing package is not a certain failure.
+    """
+    old = [failure for failure in failures if failure.values.is_of_old]
+    new = [failure for failure in failures if failure.values.is_of_new]
+    was_read = bool(old) and all(isinstance(failure.old, Description) for failure in old)
+    is_certain = not pair.cases and not any(failure.values.is_of_old for failure in new)
+    errors = [item.new for item in new if isinstance(item.new, LinkwrightError)]
+    is_lost = len(errors) == len(new) > 0 and all(error.diagnostics[0].code != _PACKAGE_CODE for error in errors)
+    return is_certain and was_read and is_lost
 
 
 def _needs_other_files(result: Description | LinkwrightError) -> bool:

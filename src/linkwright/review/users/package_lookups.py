@@ -30,7 +30,8 @@ _ROS1_MODULES = re.compile(r"\b(?:rospkg|roslib)\b")
 def find_new_lookups(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that look for another package that their own package does not name, each with a change.
 
-    A package that the repository has, or that every installation has, does not count. Tests are left out.
+    A package that the repository has, that every installation has, or that another file of the package looked for
+    before, does not count. Tests are left out.
     """
     renamed = PackageNames(find_renamed_packages(versions))
     for file in changed_files:
@@ -43,7 +44,8 @@ def find_new_lookups(versions: Versions, changed_files: Sequence[ChangedFile]) -
         new = _read_lookups(versions.new, new_path)
         lost, gained = sorted(old - new.keys()), {name: span for name, span in new.items() if name not in old}
         for name, span in gained.items() if lost else ():
-            if not _is_available(versions.new, new_path, name):
+            is_new = not _is_looked_up(versions.old, old_path, renamed, name)
+            if is_new and not _is_available(versions.new, new_path, name):
                 yield new_path, _make_change(new_path, name, lost, span)
 
 
@@ -70,6 +72,16 @@ def drop_told_lookups(changes: Sequence[Change]) -> list[Change]:
         for change in changes
         if change.reason is None or change.reason.template != lookup or change.reason.arguments.get("name") not in told
     ]
+
+
+def _is_looked_up(version: Version, path: str, renamed: PackageNames, name: str) -> bool:
+    """Return whether a file of the package of a path looks for a package in a version, by the new name of it."""
+    folder = version.package_of(path)
+    return any(
+        any(renamed.rename_derived(other) == name for other in _read_lookups(version, file))
+        for file in version.paths(_SUFFIXES)
+        if version.package_of(file) == folder and TEST_FOLDERS.isdisjoint(PurePosixPath(file).parts)
+    )
 
 
 def _is_available(version: Version, path: str, name: str) -> bool:

@@ -25,8 +25,12 @@ LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".l
 
 _COMMENT = re.compile(r"#[^\n]*")
 _WORD = re.compile(r"[\w.-]+")
-_FILE_USE = re.compile(r"\b(?:exists|isfile|is_file|isdir|is_dir|open|write_text|mkdir|makedirs|glob|listdir)\s*\(")
-"""A call with which a launch file checks whether a file exists, or makes one."""
+_FILE_USE = re.compile(
+    r"\b(?:exists|isfile|is_file|isdir|is_dir|write|write_text|dump|copy\w*|mkdir|makedirs|glob|listdir)\s*\("
+    r"|\bopen\s*\([^\n]*[\"'][wax][bt+]*[\"']|^\s*except\b",
+    re.MULTILINE,
+)
+"""A statement with which a launch file checks whether a file exists, or makes one."""
 
 
 def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:

@@ -43,6 +43,7 @@ from linkwright.review.users.missing_headers import find_missing_headers
 from linkwright.review.users.new_keys import find_new_keys
 from linkwright.review.users.old_dependencies import find_old_dependencies
 from linkwright.review.users.package_lookups import find_new_lookups
+from linkwright.review.users.silent_scripts import find_silent_scripts
 from linkwright.review.users.unknown_joints import find_unknown_joints
 from linkwright.review.users.unusable_programs import find_unusable_programs
 from linkwright.review.versions import Versions
@@ -74,7 +75,7 @@ SEARCHES: tuple[Search, ...] = (
         find_left_types,
         find_missing_fields,
     ),
-    *(find_new_lookups, find_lost_joints, find_lost_states, find_lost_units, find_lost_scripts),
+    *(find_new_lookups, find_lost_joints, find_lost_states, find_lost_units, find_silent_scripts, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
     *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures),
 )
