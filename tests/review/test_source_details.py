@@ -335,3 +335,12 @@ def test_an_added_description_of_parameters_tells_them_although_the_node_has_the
     repository.write({"arm/cfg/Arm.cfg": CFG, "arm/src/driver.cpp": source.replace("10", "20")})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert "parameters added: 'rate' (10), 'mode' ('fast')" in lines
+
+
+@pytest.mark.parametrize(("tool", "is_compared"), [("ament_cmake", False), ("catkin", True)])
+def test_descriptions_of_dynamic_reconfigure_only_count_in_ros1(repository, compare, tool, is_compared):
+    depend = f"  <buildtool_depend>{tool}</buildtool_depend>\n</package>"
+    manifest = {path: text.replace("</package>", depend) for path, text in MANIFEST.items()}
+    repository.commit({**manifest, "arm/cfg/Arm.cfg": CFG})
+    repository.write({"arm/cfg/Arm.cfg": None})
+    assert bool(breaking(compare(repository))) == is_compared
