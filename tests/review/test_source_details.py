@@ -344,3 +344,21 @@ def test_descriptions_of_dynamic_reconfigure_only_count_in_ros1(repository, comp
     repository.commit({**manifest, "arm/cfg/Arm.cfg": CFG})
     repository.write({"arm/cfg/Arm.cfg": None})
     assert bool(breaking(compare(repository))) == is_compared
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("a=1, b=2, c=3, d=4, e=5, f=6, g=7, h=8", "arguments added: h=8"),
+        ("a=1, b=2, c=3, e=5, f=6, g=7", "arguments removed: d=4"),
+        ("a=1, b=0, c=3, d=4, e=5, f=6, g=7", "arguments b=2 -> b=0"),
+        ("b=2, a=1, c=3, d=4, e=5, f=6, g=7", None),
+    ],
+)
+def test_of_long_lists_of_arguments_only_the_others_are_shown(repository, compare, new, expected):
+    old = "a=1, b=2, c=3, d=4, e=5, f=6, g=7"
+    manifest = {**MANIFEST, "arm/arm/__init__.py": ""}
+    repository.commit({**manifest, "arm/arm/tools.py": f"def grip({old}):\n    return a\n"})
+    repository.write({"arm/arm/tools.py": f"def grip({new}):\n    return a\n"})
+    line = sentences(subject(compare(repository), "arm/arm/tools.py"))[0]
+    assert line == f"function 'grip': {expected or f'arguments ({old}) -> ({new})'}"

@@ -160,7 +160,7 @@ def review(
         other_files=[path for path in result.other_files if path not in scenarios],
     )
     for version in (versions.old, versions.new):
-        result = review_without_folder(result, version.root, version.installed_shares)
+        result = review_without_folder(result, version.root, version.shares)
     return hide_secrets(versions, result)
 
 
