@@ -205,7 +205,7 @@ def _remove_symmetry(visual: Visual, rotation: Array) -> Array:
     shape = visual.geometry
     if isinstance(shape, Mesh) or (visual.material is not None and visual.material.texture):
         return rotation
-    scales = np.zeros(3)
+    scales: Array = np.zeros(3)
     if isinstance(shape, Box):
         scales = np.array(shape.size) / max(*map(abs, shape.size), 1e-9)
     elif not isinstance(shape, Sphere):
