@@ -61,6 +61,7 @@ def review_lines(repository, compare):
         (".py", 'use(name in ("left", "right"))', 'name in ("left", "right")'),
         (".py", 'use(name.lower() in ("left", "right"))', 'name.lower() in ("left", "right")'),
         (".py", 'use(name != "right")', 'name != "right"'),
+        (".py", 'if name == "right":\n        step()', 'name == "right"'),
     ],
 )
 def test_keys_and_compared_texts_of_added_code_are_named(review_lines, suffix, code, expected):

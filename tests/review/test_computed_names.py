@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 PATH = "arm/arm/arm.py"
@@ -280,3 +280,34 @@ def test_computed_name_has_the_values_that_the_source_gives(repository, compare,
     assert line.startswith("publisher '/state' (String) has a computed name now: ")
     assert line.endswith(f", which is {texts}") if texts else "which is" not in line
     assert bool(breaking(result)) == is_breaking
+
+
+SERVICES = """void Arm::start() {{
+  std::string name;
+  name = prefix + "{}";
+  stop_ = node_->create_service<std_srvs::srv::Trigger>(name.c_str(), stop);
+  name = prefix + "reset";
+  reset_ = node_->create_service<std_srvs::srv::Empty>({}, reset);
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("variable", "expected"),
+    [
+        ("name.c_str()", "'prefix + \"stop\"' (Trigger), 'prefix + \"reset\"' (Empty)"),
+        ("other", "'prefix + \"stop\"' (Trigger), 'other' (Empty)"),
+    ],
+)
+def test_names_in_a_variable_that_is_assigned_before_each_use(repository, compare, variable, expected):
+    repository.commit({**MANIFEST, CPP_PATH: "void Arm::start() {}\n"})
+    repository.write({CPP_PATH: SERVICES.format("stop", variable)})
+    lines = sentences(subject(compare(repository), CPP_PATH))
+    assert f"services with computed names added: {expected}" in lines
+
+
+def test_another_sum_in_a_variable_is_another_name(repository, compare):
+    repository.commit({**MANIFEST, CPP_PATH: SERVICES.format("stop", "name")})
+    repository.write({CPP_PATH: SERVICES.format("halt", "name")})
+    lines = sentences(subject(compare(repository), CPP_PATH))
+    assert lines[0] == "service 'prefix + \"stop\"' (Trigger) renamed to 'prefix + \"halt\"' (Trigger)"

@@ -37,3 +37,16 @@ def test_other_kind_of_address_is_told_once(repository, compare, old, new, chang
     found = [line for item in result.subjects for line in sentences(item)]
     assert found == ([] if change is None else [f"addresses of 2 meshes: {change}"])
     assert change is None or sentences(subject(result, PATH)) == found
+
+
+def test_addresses_with_file_are_shown_as_they_are_written(package, compare):
+    path = "arm_description/urdf/plain.urdf"
+    text = """<robot name="plain"><link name="base">
+  <visual><geometry><mesh filename="file://$(find {})/meshes/a.dae"/></geometry></visual>
+</link></robot>
+"""
+    package.commit({path: text.format("absent")})
+    package.write({path: text.format("arm_description")})
+    lines = [line for found in compare(package).subjects for line in sentences(found) if "geometry mesh" in line]
+    addresses = [f"file://$(find {name})/meshes/a.dae" for name in ("absent", "arm_description")]
+    assert lines == [f"link 'base': visual geometry mesh {addresses[0]} -> mesh {addresses[1]}"]

@@ -176,3 +176,34 @@ def test_another_literal_frame_of_a_published_message_is_one_line(repository, co
         assert breaking(result) == [line] * is_breaking
     else:
         assert line == "frame of messages 'wheel_odom' renamed to 'odom'"
+
+
+MEMBERS = """class Arm : public Node {{
+  void start() {{ n->header.frame_id{}; {}
+  }}
+  void send() {{
+    m->header.frame_id = {};
+    pub_->{}(m);
+  }}
+}};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old_use", "default", "variable", "method", "is_breaking"),
+    [
+        (" = frame_", "", "frame_", "publish", True),
+        (".assign(frame_)", "", "frame_", "publish", True),
+        (' = "x"', "", "frame_", "publish", False),  # a new member, which a parameter may set
+        (" = frame_", 'frame_ = "base";', "frame_", "publish", False),
+        (" = frame", "", "frame", "publish", False),
+        (" = frame_", "", "frame_", "keep", False),
+    ],
+)
+def test_literal_frame_that_becomes_a_frame_of_a_member(
+    repository, compare, old_use, default, variable, method, is_breaking
+):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": MEMBERS.format(old_use, default, '"base"', method)})
+    repository.write({"arm/src/arm.cpp": MEMBERS.format(old_use, default, variable, method)})
+    expected = ["frame_id of 'm': \"base\" -> frame_"] if is_breaking else []
+    assert breaking(compare(repository)) == expected

@@ -176,3 +176,31 @@ def test_parameter_that_a_class_loses_although_programs_without_it_have_the_same
     renamed = "parameter 'frame_id' (\"base\") renamed to 'target_frame_id' (\"base\")"
     assert (renamed in lines) is is_lost
     assert bool(broken) is is_lost
+
+
+CMAKE = """project(arm)
+add_executable(drive src/drive.cpp)
+{}
+install(TARGETS drive hardware DESTINATION lib/arm)
+ament_package()
+"""
+HARDWARE = """void Hardware::start(rclcpp::Node & node) {
+  stop_ = node.create_subscription<String>("stop", 1, std::bind(&Hardware::onStop, this, _1));
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("target", "is_told"),
+    [
+        ("add_executable(hardware src/hardware.cpp)", True),
+        ("target_sources(drive PRIVATE src/hardware.cpp)", False),
+        ("add_library(hardware src/hardware.cpp)\ntarget_link_libraries(drive hardware)", False),
+    ],
+)
+def test_an_added_source_of_another_program_gets_the_names_of_the_first(review_node, target, is_told):
+    old = {"arm/src/drive.cpp": NODE, "arm/CMakeLists.txt": CMAKE.format("")}
+    lines, _ = review_node(old, {"arm/src/hardware.cpp": HARDWARE, "arm/CMakeLists.txt": CMAKE.format(target)})
+    assert ("subscriptions added: 'stop' (String)" in lines) == is_told
+    lines, reasons = review_node({}, {"arm/src/hardware.cpp": None, "arm/CMakeLists.txt": CMAKE.format("")})
+    assert not [line for line in (*lines, *reasons) if "'stop'" in line]

@@ -78,3 +78,27 @@ def test_a_helper_module_of_launch_files_does_not_read_a_parameter(repository, c
     repository.commit({**MANIFEST, "arm/src/arm.cpp": node, "arm/arm/actions.py": helper})
     repository.write({"arm/src/arm.cpp": "void Arm::start() {\n  run(speed_);\n}\n"})
     assert breaking(compare(repository)) == expected
+
+
+HARDWARE = """#include <hardware_interface/system_interface.hpp>
+int Arm::on_init(const HardwareInfo & info) {{
+  try {{
+    {variable}_ = std::stod(
+      info_.hardware_parameters.count("{name}") ?
+      info_.hardware_parameters.at("{name}") : "0");
+  }} catch (const std::exception &) {{ return 1; }}
+  if ({variable}_ {check}) return 1;
+  return 0;
+}}
+"""
+
+
+@pytest.mark.parametrize(("check", "is_renamed"), [("< 0", True), ("> max_speed_", False)])
+def test_a_parameter_of_hardware_is_renamed_only_with_the_same_use(repository, compare, check, is_renamed):
+    old = HARDWARE.format(name="speed_zone", variable="zone", check="< 0")
+    new = HARDWARE.format(name="speed_gain", variable="gain", check=check)
+    repository.commit({**MANIFEST, "arm/a.cpp": old})
+    repository.write({"arm/a.cpp": new})
+    title = "parameter of the hardware" if is_renamed else "parameters of the hardware removed:"
+    renamed = " renamed to 'speed_gain'" if is_renamed else ""
+    assert breaking(compare(repository)) == [f"{title} 'speed_zone'{renamed}"]

@@ -63,7 +63,7 @@ def test_expression_in_xacro_is_not_breaking(repository, compare):
     result = compare(repository)
     assert breaking(result) == []
     assert sentences(subject(result, path)) == [
-        "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh file://w/meshes/base.stl"
+        "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh file://$(find w)/meshes/base.stl"
     ]
 
 
@@ -191,7 +191,7 @@ def test_mesh_named_by_its_file_differs_from_its_path(repository, compare):
     repository.commit({**FILES, path: text.format("$(find w)/meshes/base.stl")})
     repository.write({path: text.format("file://$(find w)/meshes/base.stl")})
     assert sentences(subject(compare(repository), path)) == [
-        "link 'base': visual geometry mesh w/meshes/base.stl -> mesh file://w/meshes/base.stl"
+        "link 'base': visual geometry mesh w/meshes/base.stl -> mesh file://$(find w)/meshes/base.stl"
     ]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import ARM
-from tests.review.conftest import breaking
+from tests.review.conftest import breaking, subject
 
 ROBOT = "arm_description/urdf/arm.urdf.xacro"
 PART = "arm_description/urdf/hardware.xacro"
@@ -41,6 +41,32 @@ def test_hardware_for_another_simulator_is_breaking(package, compare, path, make
     result = compare(package)
     reasons = [str(change.reason) for found in result.subjects for change in found.changes if change.reason is not None]
     assert reasons == [REASON] * is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("arm_driver/ArmHardware", NEW, "a simulation is used instead of the hardware of the robot"),
+        (NEW, "arm_driver/ArmHardware", "the hardware of the robot is used instead of a simulation"),
+        ("arm_driver/SimulatedArm", NEW, None),
+        ("topic_based_ros2_control/TopicBasedSystem", NEW, None),
+    ],
+)
+def test_simulation_instead_of_hardware_is_breaking(package, compare, old, new, reason):
+    package.commit({PART: make_part(CONTROL.format(plugin=old))})
+    package.write({PART: make_part(CONTROL.format(plugin=new))})
+    result = compare(package)
+    found = [change.reason for found in result.subjects for change in found.changes if change.reason is not None]
+    assert [*map(str, found)] == ([reason] if reason else [])
+
+
+def test_hardware_that_another_changed_file_still_has_is_not_lost(package, compare):
+    package.commit({PART: make_part(CONTROL.format(plugin="arm_driver/ArmHardware"))})
+    real = "arm_description/urdf/real.xacro"
+    package.write({PART: make_part(CONTROL.format(plugin=NEW)), real: make_part("<!-- arm_driver/ArmHardware -->")})
+    assert len(breaking(compare(package))) == 1
+    package.write({real: make_part(CONTROL.format(plugin="arm_driver/ArmHardware"))})
+    assert breaking(compare(package)) == []
 
 
 def test_hardware_that_an_argument_still_chooses_is_not_lost(package, compare):
@@ -98,3 +124,50 @@ def test_controller_manager_that_still_runs_breaks_nothing(package, compare, old
     content = "" if new is None else MANAGER.format(new)
     package.write({ROBOT: make_robot(content), PART: make_part(MANAGER.format(part) if part else "")})
     assert breaking(compare(package)) == []
+
+
+@pytest.mark.parametrize(("is_kept", "expected"), [(False, [REASON]), (True, [])])
+def test_controller_manager_of_another_simulator_is_breaking(package, compare, is_kept, expected):
+    old, new = MANAGER.format("libgazebo_ros2_control.so"), MANAGER.format("libgz_ros2_control-system.so")
+    package.commit({ROBOT: make_robot(old)})
+    argument = '<xacro:arg name="classic" default="false"/>'
+    kept = f'<xacro:if value="$(arg classic)">{old}</xacro:if>'
+    package.write({ROBOT: make_robot(argument + kept + new if is_kept else new)})
+    reasons = [change.reason for found in compare(package).subjects for change in found.changes if change.reason]
+    assert [*map(str, reasons)] == expected
+
+
+SENSOR = '<gazebo reference="upper">{}</gazebo>'
+RAY = """<sensor name="scanner" type="ray"><update_rate>10</update_rate>
+  <plugin name="scan" filename="libgazebo_ros_ray_sensor.so"><ros><remapping>~/out:=scan</remapping></ros>{}</plugin>
+</sensor>"""
+LIDAR = '<sensor name="front" type="gpu_lidar"><topic>scan</topic><update_rate>10</update_rate></sensor>'
+
+
+@pytest.mark.parametrize("frame", ["", "scan_frame"])
+def test_lidars_of_both_simulators_are_compared(package, compare, frame):
+    package.commit({ROBOT: make_robot(SENSOR.format(RAY.format(frame and f"<frame_name>{frame}</frame_name>")))})
+    package.write({ROBOT: make_robot(SENSOR.format(LIDAR))})
+    (change,) = [item for item in subject(compare(package), ROBOT).changes if "scanner" in str(item.sentence)]
+    assert str(change.sentence).startswith("extension 'gazebo upper': sensor 'scanner' renamed to 'front': ")
+    reason = "programs that look for the frame 'scan_frame' in the messages do not find it" if frame else "None"
+    assert str(change.reason) == reason
+
+
+CAMERA = '<sensor name="eye" type="camera"><plugin name="p" filename="libgazebo_ros_camera.so">{}</plugin></sensor>'
+
+
+@pytest.mark.parametrize(
+    ("parameters", "topics"),
+    [
+        ("<frame_name>upper</frame_name>", "'eye/image_raw', 'eye/camera_info'"),
+        ("<ros><remapping>eye/image_raw:=image</remapping></ros>", "'image'"),
+        ("<frameName>upper</frameName>", None),
+        ("", None),
+    ],
+)
+def test_removed_camera_of_gazebo_classic_has_topics(package, compare, parameters, topics):
+    package.commit({ROBOT: make_robot(SENSOR.format(CAMERA.format(parameters)))})
+    package.write({ROBOT: make_robot("")})
+    reasons = [change.reason for found in compare(package).subjects for change in found.changes if change.reason]
+    assert [*map(str, reasons)] == [f"programs that use {topics} do not find the names"] * bool(topics)

@@ -335,3 +335,30 @@ def test_an_added_description_of_parameters_tells_them_although_the_node_has_the
     repository.write({"arm/cfg/Arm.cfg": CFG, "arm/src/driver.cpp": source.replace("10", "20")})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert "parameters added: 'rate' (10), 'mode' ('fast')" in lines
+
+
+@pytest.mark.parametrize(("tool", "is_compared"), [("ament_cmake", False), ("catkin", True)])
+def test_descriptions_of_dynamic_reconfigure_only_count_in_ros1(repository, compare, tool, is_compared):
+    depend = f"  <buildtool_depend>{tool}</buildtool_depend>\n</package>"
+    manifest = {path: text.replace("</package>", depend) for path, text in MANIFEST.items()}
+    repository.commit({**manifest, "arm/cfg/Arm.cfg": CFG})
+    repository.write({"arm/cfg/Arm.cfg": None})
+    assert bool(breaking(compare(repository))) == is_compared
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("a=1, b=2, c=3, d=4, e=5, f=6, g=7, h=8", "arguments added: h=8"),
+        ("a=1, b=2, c=3, e=5, f=6, g=7", "arguments removed: d=4"),
+        ("a=1, b=0, c=3, d=4, e=5, f=6, g=7", "arguments b=2 -> b=0"),
+        ("b=2, a=1, c=3, d=4, e=5, f=6, g=7", None),
+    ],
+)
+def test_of_long_lists_of_arguments_only_the_others_are_shown(repository, compare, new, expected):
+    old = "a=1, b=2, c=3, d=4, e=5, f=6, g=7"
+    manifest = {**MANIFEST, "arm/arm/__init__.py": ""}
+    repository.commit({**manifest, "arm/arm/tools.py": f"def grip({old}):\n    return a\n"})
+    repository.write({"arm/arm/tools.py": f"def grip({new}):\n    return a\n"})
+    line = sentences(subject(compare(repository), "arm/arm/tools.py"))[0]
+    assert line == f"function 'grip': {expected or f'arguments ({old}) -> ({new})'}"

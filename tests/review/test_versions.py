@@ -220,11 +220,32 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
     package.commit({})
     result = compare(package, "HEAD~1..HEAD")
     assert [str(note) for note in result.notes] == ["submodule 'vendor' added; its files are not compared"]
+    old = other.git("rev-parse", "HEAD").strip()
+    other.commit({"b.urdf": "<robot name='b'><link name='b'/></robot>"})
+    new = other.git("rev-parse", "HEAD").strip()
+    package.git("-C", "vendor", "pull", "--quiet")
+    (note,) = compare(package).notes
+    assert str(note) == "submodule 'vendor' changed; its files are not compared"  # git does not tell the new commit
+    package.commit({})
+    (note,) = compare(package, "HEAD~1..HEAD").notes
+    assert str(note) == f"submodule 'vendor' changed: {old[:7]} -> {new[:7]}; its files are not compared"
     package.git("rm", "--quiet", "vendor")
     package.commit({})
     result = compare(package, "HEAD~1..HEAD")
     assert breaking(result) == ["submodule removed"]
     assert result.notes == []
+
+
+def test_submodules_without_a_readable_gitmodules_file_are_compared(package, compare, tmp_path):
+    """Such a file is a pointer of Git LFS, for example."""
+    other = Repository(tmp_path / "other")
+    other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor")
+    package.commit({})
+    package.write({".gitmodules": "version 1\n", "arm_description/urdf/segment.xacro": arm_with_mass(3)})
+    package.git("commit", "--quiet", "--all", "--message", "not well-formed")
+    result = compare(package, "HEAD~1..HEAD")
+    assert mass_sentences(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
 @pytest.mark.parametrize("is_used", [False, True])

@@ -25,6 +25,8 @@ _LFS_POINTER = lazy_pattern(
     rb"oid sha256:(?P<hash>[0-9a-f]{64})\nsize (?P<size>\d+)"
 )
 _RAW = ("--raw", "-z", "--no-abbrev")
+_SUBMODULES = ("--ignore-submodules=dirty",)
+"""Compare submodules only by their commits. Else git reads ``.gitmodules``, and fails if that is not well-formed."""
 _MAX_MISSING_FILES = 500
 """The maximum number of files without contents that are passed to git."""
 _LINK_MODE = "120000"
@@ -46,12 +48,14 @@ class ChangedFile:
         new_path: the path in the new commit or in the working tree; None for a removed file.
         is_submodule: whether the path is that of a submodule.
         is_executable: whether the file is a program in the new version, if only one version is; otherwise None.
+        submodule_commits: the old and the new commit of a changed submodule; None if one is unknown.
     """
 
     old_path: str | None
     new_path: str | None
     is_submodule: bool = False
     is_executable: bool | None = None
+    submodule_commits: tuple[str, str] | None = None
 
     @property
     def path(self) -> str:
@@ -302,7 +306,7 @@ class GitRepository:
             LinkwrightError: CLI346 if git cannot compare them.
         """
         commits = [old_commit] if new_commit is None else [old_commit, new_commit]
-        result = self.run("diff", "--no-ext-diff", "--find-renames", *_RAW, *commits)
+        result = self.run("diff", "--no-ext-diff", "--find-renames", *_SUBMODULES, *_RAW, *commits)
         if result.returncode != 0:
             result = self._compare_incomplete_commits(commits)
         if result.returncode != 0:
@@ -320,7 +324,7 @@ class GitRepository:
         To recognize renamed files that were edited, git needs their contents. It therefore compares the files with
         known contents, and then the others, which it recognizes if they are equal.
         """
-        command = (*(("diff-index",) if len(commits) == 1 else ("diff-tree", "-r")), *_RAW)
+        command = (*(("diff-index",) if len(commits) == 1 else ("diff-tree", "-r")), *_SUBMODULES, *_RAW)
         result = self.run(*command, *commits)
         objects = self.run("cat-file", "--batch-all-objects", "--batch-check=%(objectname)")
         known = set(objects.stdout.split())
@@ -415,11 +419,13 @@ def _parse_raw_changes(text: str) -> Iterator[_RawChange]:
         old_path = new_path = next(fields)
         if status.startswith(("R", "C")):
             new_path = next(fields)
+        hashes = tuple(name for name in (old_hash, new_hash) if name.strip("0"))
+        is_other_commit = old_mode == new_mode == _SUBMODULE_MODE and len({*hashes}) > 1
         file = ChangedFile(
             None if old_mode == _NO_FILE_MODE or status.startswith("C") else old_path,
             None if new_mode == _NO_FILE_MODE else new_path,
             _SUBMODULE_MODE in (old_mode, new_mode),
             new_mode == _PROGRAM_MODE if {old_mode, new_mode} == {_PROGRAM_MODE, _PLAIN_MODE} else None,
+            (old_hash, new_hash) if is_other_commit else None,
         )
-        hashes = tuple(name for name in (old_hash, new_hash) if name.strip("0"))
         yield _RawChange(file, f"{old_mode} {old_hash}", hashes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,8 @@ from linkwright.review.changes import Review, Subject
 from linkwright.xacro.omissions import PLACEHOLDER_FOLDER
 
 _Value = TypeVar("_Value")
+_MISSING_FILE = re.compile(rf"file://{re.escape(str(PLACEHOLDER_FOLDER))}/([^/\s]+)/")
+"""The address of a file of a missing package that a description writes as ``file://$(find arm)/...``."""
 
 
 def without_folder(value: _Value, folder: Path) -> _Value:
@@ -23,6 +26,7 @@ def without_folder(value: _Value, folder: Path) -> _Value:
 
     def change(text: str) -> str:
         text = text.replace(f"{folder}/", "").replace(str(folder), ".")
+        text = _MISSING_FILE.sub(r"file://$(find \1)/", text)
         return text.replace(f"{PLACEHOLDER_FOLDER}/", "package://")
 
     return change_texts(value, change)
@@ -77,11 +81,15 @@ def review_without_folder(result: Review, folder: Path, shares: Mapping[str, Pat
     Args:
         result: the review.
         folder: the folder of a version.
-        shares: the share folders outside the version, by package.
+        shares: the share folders of the packages of the version. Paths inside the folder stay paths, but not URIs.
     """
-    write_uris = _make_uri_writer(shares)
+    write_uris = _make_uri_writer({name: share for name, share in shares.items() if not share.is_relative_to(folder)})
+    own = {name: share for name, share in shares.items() if share.is_relative_to(folder)}
 
     def change(text: str) -> str:
+        if "file://" in text:
+            for name, share in own.items():
+                text = text.replace(f"file://{share}/", f"file://$(find {name})/")
         return without_folder(write_uris(text), folder)
 
     return review_with_texts(result, change)

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
+from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Subject
 from linkwright.review.versions import Version
 
@@ -14,6 +15,8 @@ _MAX_NAMES = 5
 """The maximum number of missing packages and files that a note names."""
 _PLACE = re.compile(r"^\S+?:\d+(?::\d+)?: ")
 """The file and the line at the beginning of a reason."""
+_COMMIT_LENGTH = 7
+"""The number of digits of a commit in notes."""
 _MIN_UNEXPANDED = 3
 """The minimum number of files with the same reason that a note replaces."""
 
@@ -44,6 +47,16 @@ def make_unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
             path=first.path,
             reason=first.problems[0].text,
         )
+
+
+def make_submodule_note(file: ChangedFile) -> Phrase:
+    """Return the note about a changed submodule, with its commits if both are known."""
+    if file.submodule_commits is None:
+        return phrase("submodule '{path}' changed; its files are not compared", path=file.path)
+    old, new = (commit[:_COMMIT_LENGTH] for commit in file.submodule_commits)
+    return phrase(
+        "submodule '{path}' changed: {old} -> {new}; its files are not compared", path=file.path, old=old, new=new
+    )
 
 
 def group_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:

@@ -32,6 +32,8 @@ _PLUGIN_PARAMETER = re.compile(r"plugin (?P<name>\S+) (?:\S+ )*?(?P<tag>\S+)(?: 
 """The path of a parameter of a plugin."""
 _MAX_VALUES = 12
 """The maximum number of values of a plugin, sensor or other element in a line."""
+_CAMERA_TAGS = frozenset({"ros", "frame_name", "hack_baseline", "min_depth", "max_depth"})
+"""Parameters of ``gazebo_ros_camera`` of ROS 2."""
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
 
 
@@ -131,7 +133,21 @@ def _format_default_topics(element: Element) -> Phrase | None:
 def find_topics(element: Element) -> list[str]:
     """Return the topics of the plugins and sensors in an element."""
     topics = [topic for plugin in find_plugins(element) for topic in find_plugin_topics(plugin)]
-    return list(dict.fromkeys([*topics, *find_sensor_topics(element)]))
+    cameras = [topic for child in element.walk() if child.tag == "sensor" for topic in _find_camera_topics(child)]
+    return list(dict.fromkeys([*topics, *cameras, *find_sensor_topics(element)]))
+
+
+def _find_camera_topics(sensor: Element) -> Iterator[str]:
+    """Yield the default topics of the plugin of a camera in ROS 2, whose first part is the name of the sensor.
+
+    The plugin of ROS 1 has tags in mixed case, and its topics do not have this name.
+    """
+    for plugin in sensor.elements("plugin"):
+        tags = {child.tag for child in plugin.elements()}
+        if "gazebo_ros_camera" in plugin.attributes.get("filename", "") and tags & _CAMERA_TAGS:
+            is_named = "camera_name" in tags or any(tag == "remapping" for tag, _ in _find_parameters(plugin))
+            for topic in () if is_named or any(map(str.isupper, "".join(tags))) else ("image_raw", "camera_info"):
+                yield f"{sensor.attributes.get('name', '')}/{topic}"
 
 
 def is_added(difference: Difference) -> bool:

@@ -16,7 +16,9 @@ from linkwright.xmltree import Element
 _SENSOR = "sensor"
 _SAME_TAGS = {"ray": "lidar"}
 """Tags of the same meaning, with the one under which their values are compared."""
-_FRAME_TAG = re.compile(r"((gz|ignition)_)?frame_id")
+_SAME_TYPES = {"ray": "lidar", "gpu_ray": "lidar", "gpu_lidar": "lidar"}
+"""Types of sensors with the same messages."""
+_FRAME_TAG = re.compile(r"((gz|ignition)_)?frame_id|frame_?[nN]ame")
 _MAX_VALUES = 12
 
 
@@ -78,7 +80,8 @@ def _group_sensors(differences: Iterable[Difference]) -> dict[tuple[str, str], l
     for difference in differences:
         element = difference.element
         if element is not None and element.tag == _SENSOR and difference.kind == "changed":
-            groups.setdefault((difference.name, element.attributes.get("type", "")), []).append(difference)
+            sensor_type = element.attributes.get("type", "")
+            groups.setdefault((difference.name, _SAME_TYPES.get(sensor_type, sensor_type)), []).append(difference)
     return groups
 
 

@@ -73,6 +73,7 @@ from linkwright.review.notes import (
     is_unreadable_as_before,
     make_checkout_notes,
     make_missing_notes,
+    make_submodule_note,
     make_unreadable_notes,
 )
 from linkwright.review.other_files import find_file_states
@@ -161,7 +162,7 @@ def review(
         other_files=[path for path in result.other_files if path not in scenarios],
     )
     for version in (versions.old, versions.new):
-        result = review_without_folder(result, version.root, version.installed_shares)
+        result = review_without_folder(result, version.root, version.shares)
     return hide_secrets(versions, result)
 
 
@@ -497,7 +498,7 @@ class _Reviewer:
                 elif file.new_path is None and not self._is_removed_submodule(file):
                     yield phrase("submodule '{path}' replaced by files of the repository", path=file.path)
                 elif file.new_path is not None:
-                    yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
+                    yield make_submodule_note(file)
         yield from make_checkout_notes([self._versions.old, self._versions.new])
 
 

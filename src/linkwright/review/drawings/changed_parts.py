@@ -15,7 +15,7 @@ from linkwright.geometry.mesh_content import surface_key
 from linkwright.geometry.shapes import Placement
 from linkwright.picture.link_frames import placement_from_pose
 from linkwright.review.frames import SharedFrames
-from linkwright.urdf import Mesh, Robot, Visual
+from linkwright.urdf import Box, Mesh, Pose, Robot, Sphere, Visual
 
 Array = NDArray[np.float64]
 
@@ -79,6 +79,8 @@ def find_changed_collisions(
         difference.name
         for difference in comparison.differences
         if difference.subject == "link" and difference.property.startswith("collision") and difference.name in old_names
+        if not difference.property.endswith(_POSE_PROPERTIES)
+        or not _have_equal_poses(old, old_names[difference.name], new, difference.name)
     }
     if not changed:
         return None
@@ -183,12 +185,40 @@ def _find_moved_links(
 
 
 def _compute_visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
-    """Return the rotations and positions of a link's visuals in the frame of the images.
+    """Return the orientations and positions of a link's visuals in the frame of the images.
 
+    Two orientations in which a shape looks the same, such as those of a cylinder after half a turn, are equal.
     The shape of the result is (visuals, 4, 3).
     """
-    poses = [placement_from_pose(visual.origin).inside(frame) for visual in robot.links[link].visuals]
-    return np.array([[*pose.rotation, pose.position] for pose in poses])
+    visuals = robot.links[link].visuals
+    poses = [placement_from_pose(visual.origin).inside(frame) for visual in visuals]
+    return np.array(
+        [
+            [*_remove_symmetry(visual, np.array(pose.rotation)), pose.position]
+            for visual, pose in zip(visuals, poses, strict=True)
+        ]
+    )
+
+
+def _remove_symmetry(visual: Visual, rotation: Array) -> Array:
+    """Return a matrix that is equal for all rotations in which a shape looks the same, shape (3, 3)."""
+    shape = visual.geometry
+    if isinstance(shape, Mesh) or (visual.material is not None and visual.material.texture):
+        return rotation
+    scales: Array = np.zeros(3)
+    if isinstance(shape, Box):
+        scales = np.array(shape.size) / max(*map(abs, shape.size), 1e-9)
+    elif not isinstance(shape, Sphere):
+        scales = np.array([0.0, 0.0, 1.0])
+    turned: Array = rotation @ np.diag(scales**2) @ rotation.T
+    return turned
+
+
+def _have_equal_poses(old: Robot, old_name: str, new: Robot, new_name: str) -> bool:
+    """Return whether the visuals of a link look the same in the frames of the link."""
+    origin = placement_from_pose(Pose())
+    poses = _compute_visual_poses(old, old_name, origin), _compute_visual_poses(new, new_name, origin)
+    return poses[0].shape == poses[1].shape and _are_equal_poses(*poses)
 
 
 def _are_equal_poses(old: Array, new: Array) -> bool:

@@ -107,15 +107,15 @@ def _make_anchor(body: Body) -> Anchor:
 def make_close_up(scenes: Sequence[Scene], size: tuple[int, int]) -> dict[str, Camera]:
     """Return the camera that shows the highlighted parts and their surroundings, by its label.
 
-    The result is empty if the parts are large or there are none. Of several sides, the first one is chosen from which
-    nearly as much of the parts is visible as from the best side.
+    The result is empty if the parts are large, or if no link is among them: axes alone show no place. Of several sides,
+    the first one is chosen from which nearly as much of the parts is visible as from the best side.
     """
     highlighted = [
         Scene([body for body in scene.bodies if body.outline is not None and body.surfaces], axes=scene.axes)
         for scene in scenes
     ]
     points = [scene.points for scene in highlighted if scene.bodies or scene.axes]
-    if not points:
+    if not any(scene.bodies for scene in highlighted):
         return {}
     extent = _Extent.of(np.concatenate(points))
     whole = _Extent.of(np.concatenate([scene.points for scene in scenes]))

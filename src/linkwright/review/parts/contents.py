@@ -389,7 +389,7 @@ class _ReportedDifference:
             find_missing_plugin_reason(self.pair, self.macro, difference)
             or find_extension_reason(changed)
             or find_controller_file_reason(changed, self.pair.versions)
-            or find_simulator_reason(changed, self.pair.versions.new, self.pair.new_path)
+            or find_simulator_reason(changed, self.pair.versions, self.pair.new_path)
         )
 
     def _is_passed_to_macro(self, name: str) -> bool:

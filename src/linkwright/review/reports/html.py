@@ -35,6 +35,8 @@ from linkwright.review.reports.sentences import (
     list_other_files,
 )
 
+_ImageKey = tuple[tuple[str, bytes, bytes], ...]
+"""The name of each view of a file, with the image of the old and of the new version."""
 _MAX_CHARACTERS = 1000
 """The maximum number of characters of a change that are shown without a click."""
 
@@ -86,11 +88,12 @@ def as_html(review: Review) -> str:
     new = review.new_name or localized(phrase("working tree"))
     title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
     scenes = Scenes(review.subjects)
+    shown: dict[_ImageKey, str] = {}
     sections, code_sections = separate_code(divide_report(review))
     parts = [
         f"<h1>{_escape_text(title)}</h1><p class='soft'>{_escape_text(format_summary(review))}</p>",
         *_render_breaking_changes(review),
-        *(_render_section(section, scenes) for section in sections),
+        *(_render_section(section, scenes, shown) for section in sections),
         *_render_list(format_code_heading(len(code_sections)), list(map(_render_code_section, code_sections))),
         *_render_findings(phrase("New findings"), review.new_findings),
         *_render_findings(phrase("Fixed findings"), review.fixed_findings),
@@ -122,7 +125,14 @@ def _render_breaking_changes(review: Review) -> Iterator[str]:
     yield from _render_list(phrase("Breaking changes"), items)
 
 
-def _render_section(section: Section, scenes: Scenes) -> str:
+def _render_section(section: Section, scenes: Scenes, shown: dict[_ImageKey, str]) -> str:
+    """Return the part of the page about a file.
+
+    Args:
+        section: the changes of the file.
+        scenes: the 3D scenes of the page.
+        shown: the images that other parts have, with the paths of their files. The images of this part are added.
+    """
     subject = section.subject
     items = _render_changes(section)
     items += [_escape_text(format_repeated(repeat)) for repeat in section.repeated]
@@ -131,10 +141,9 @@ def _render_section(section: Section, scenes: Scenes) -> str:
     items += [f"<span class='breaking'>{_escape_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     plots = "".join(map(draw_path_plot, subject.paths))
-    return (
-        f"<h2>{_render_path(subject.path, get_path_state(subject))}</h2><section>"
-        f"{_render_images(subject.images)}{scenes.create_element(subject.scene)}{_render_figures(subject.figures)}{changes}{plots}</section>"
-    )
+    pictures = f"{_render_images(subject, shown)}{scenes.create_element(subject.scene)}"
+    contents = f"{pictures}{_render_figures(subject.figures)}{changes}{plots}"
+    return f"<h2>{_render_path(subject.path, get_path_state(subject))}</h2><section>{contents}</section>"
 
 
 def _render_code_section(section: Section) -> str:
@@ -193,9 +202,14 @@ def _render_figures(figures: Sequence[Figure]) -> str:
     return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
-def _render_images(images: Sequence[ViewImages]) -> str:
+def _render_images(subject: Subject, shown: dict[_ImageKey, str]) -> str:
+    """Return the images of a file, or a line about another file that has the same ones."""
+    images = subject.images
     if not images:
         return ""
+    path = shown.setdefault(tuple((view.name, view.old, view.new) for view in images), subject.path)
+    if path != subject.path:
+        return f"<p class='soft'>{_escape_text(phrase('the same images as in {path}', path=path))}</p>"
     notes = format_image_notes(images)
     text = "" if notes is None else f"<p class='soft'>{_escape_text(notes)}</p>"
     return f"<div class='images'>{''.join(map(_render_image, images))}</div>{text}"

@@ -286,7 +286,7 @@ def _find_simulator_reason(pair: FilePair, difference: Difference) -> Phrase | N
     """Return the reason why hardware for another simulator is breaking, or None if it is not."""
     location = _find_difference_location(pair, difference)
     path = None if location is None or location.is_old else location.file
-    return find_simulator_reason(difference, pair.versions.new, path)
+    return find_simulator_reason(difference, pair.versions, path)
 
 
 def _find_frame_reason(difference: Difference) -> Phrase | None:

@@ -166,9 +166,7 @@ class _SourcePair(PairedNames):
         path, old_path = self.file.path, self.file.old_path or self.file.path
         only_old = {name: item for name, item in before.items() if name not in after}
         only_new = {name: item for name, item in after.items() if name not in before}
-        left = [
-            item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
-        ]
+        left = [item for item in only_old.values() if self._is_left_to_others(item)]
         removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
         is_new_node = self.file.old_path is None and (new_names.makes_node or path.endswith(DYNAMIC_SUFFIX))
         lacks = self.old.lacks
@@ -321,9 +319,12 @@ class _SourcePair(PairedNames):
         return reason if path is None else phrase("{reason}, such as {file}", reason=reason, file=path)
 
     def _is_left_to_others(self, item: SourceName) -> bool:
-        """Return whether only other nodes of the package still have a name that they had before."""
+        """Return whether only other nodes of the package still have a name that they had before.
+
+        A removed source leaves its names to others in another sense: what it offered is one line.
+        """
         paths = self.file.path, self.file.old_path or self.file.path
-        return has_only_in_other_nodes(item, self.new, self.old, paths)
+        return self.file.new_path is not None and has_only_in_other_nodes(item, self.new, self.old, paths)
 
     def _is_unreachable(self) -> bool:
         """Return whether nothing starts or imports the source, in each version that has it."""

@@ -315,6 +315,7 @@ class _Reader:
             type_name = type_name or self._find_callback_type(kind, texts)
             details = tuple(self._find_qos(call, texts))
         if is_ros:
+            name = name if name in self._names.defaults else self._texts.find_sum(name, offsets[0])
             self._names.expressions.append(self._make_name(kind, name, type_name, *offsets, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:

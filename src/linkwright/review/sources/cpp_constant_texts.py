@@ -8,9 +8,17 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.review.sources.cpp_text_functions import TextFunctions
-from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_assigned_text, find_constants
+from linkwright.review.sources.cpp_values import (
+    TEXT,
+    VARIABLE,
+    InitialValues,
+    find_assigned_expression,
+    find_assigned_text,
+    find_constants,
+)
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.message_constants import read_message_constants
+from linkwright.review.sources.name_patterns import is_sum_of_texts
 from linkwright.review.sources.parameter_defaults import split_sum
 from linkwright.review.sources.shared_constants import read_header_constants
 
@@ -56,6 +64,12 @@ class ConstantTexts:
         if variable is None:
             return self._functions.evaluate(expression)
         return self._find(variable["name"], begin)
+
+    def find_sum(self, expression: str, position: int) -> str:
+        """Return the sum of texts that a variable has at an offset, or the expression itself if it is none."""
+        variable = VARIABLE.fullmatch(expression)
+        assigned = None if variable is None else find_assigned_expression(self._text, variable["name"], position)
+        return assigned if assigned is not None and is_sum_of_texts(assigned) else expression
 
     def _find_in_message(self, expression: str) -> str | None:
         """Return the text of a constant of a message of the repository, or None for other expressions."""

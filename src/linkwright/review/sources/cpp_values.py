@@ -19,6 +19,8 @@ _CONSTANT = re.compile(
 _ASSIGNED_TEXT = re.compile(
     r'\s*(?:=|(?P<open>[({]))\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;'
 )
+_ASSIGNED_EXPRESSION = re.compile(r"\s*=(?P<expression>[^;{}]+);")
+_MAX_EXPRESSION_CHARACTERS = 80
 _TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
 _UNNAMED_VALUE = r"(?:-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
 _VALUE = rf"(?P<value>{_UNNAMED_VALUE})"
@@ -77,13 +79,35 @@ def find_assigned_text(text: str, name: str, position: int) -> str | None:
         name: the name of the variable.
         position: the offset of the place.
     """
+    assigned = _find_last_assignment(text, name, position, _ASSIGNED_TEXT)
+    return None if assigned is None else assigned["text"]
+
+
+def find_assigned_expression(text: str, name: str, position: int) -> str | None:
+    """Return the expression that the last statement before a place assigns to a local variable, in one line, or None.
+
+    Args:
+        text: the source without comments.
+        name: the name of the variable.
+        position: the offset of the place.
+    """
+    assigned = _find_last_assignment(text, name, position, _ASSIGNED_EXPRESSION)
+    expression = "" if assigned is None else " ".join(assigned["expression"].split())
+    return expression if 0 < len(expression) <= _MAX_EXPRESSION_CHARACTERS else None
+
+
+def _find_last_assignment(text: str, name: str, position: int, form: re.Pattern[str]) -> re.Match[str] | None:
+    """Return the last assignment to a variable before a place, in the same block or one around it.
+
+    The result is None if the assignment has another form, or if something else may set the variable after it.
+    """
     start = max(0, text.rfind("\n}", 0, position))
     changes = list(
         re.finditer(rf"(?<![\w.>\"]){re.escape(name)}\s*(?:[+]?=(?!=)|>>|\(\s*\"|\{{)", text[start:position])
     )
     if not changes:
         return None
-    assigned = _ASSIGNED_TEXT.match(text, start + changes[-1].start() + len(name), position)
+    assigned = form.match(text, start + changes[-1].start() + len(name), position)
     if assigned is None:
         return None
     between = text[assigned.end() : position]
@@ -92,7 +116,7 @@ def find_assigned_text(text: str, name: str, position: int) -> str | None:
         depth += 1 if bracket == "{" else -1
         if depth < 0:
             return None  # the block of the assignment ends before the place
-    return None if _is_output(between, name) else assigned["text"]
+    return None if _is_output(between, name) else assigned
 
 
 def _is_output(text: str, name: str) -> bool:

@@ -9,12 +9,15 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.breaking import quote_first, quoted
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.list_changes import nested_list_items
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.qos import find_depth, find_qos_reason, list_policies, normalize_qos
 from linkwright.review.sources.signatures import NOTHING, parse_signature
 
+_MIN_KEPT_ARGUMENTS = 6
+"""The minimum number of arguments in both versions of a list of which only the others are shown."""
 _KNOWN_IN_BOTH = (
     *(Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.RETURNED),
     *(Detail.RETURNED_COUNT, Detail.BASES, Detail.CREATED_IN),
@@ -146,7 +149,25 @@ def compare_details(
             old=before or missing,
             new=after or missing,
         )
+        if detail is Detail.ARGUMENTS:
+            text = _format_argument_change(new, before or "", after or "") or text
         yield text, _find_detail_reason(new, detail, before, after), detail
+
+
+def _format_argument_change(item: SourceName, old: str, new: str) -> Phrase | None:
+    """Return which arguments of a long list were added and removed; None if the list is short or has another order."""
+    old_items, new_items = (nested_list_items(f"[{text[1:-1]}]") for text in (old, new))
+    kept = [argument for argument in old_items if argument in new_items]
+    if len(kept) < _MIN_KEPT_ARGUMENTS or kept != [argument for argument in new_items if argument in old_items]:
+        return None
+    added = ", ".join(argument for argument in new_items if argument not in old_items)
+    removed = ", ".join(argument for argument in old_items if argument not in new_items)
+    name = phrase("{kind} '{name}'", kind=item.kind.title, name=item.name)
+    if not removed:
+        return phrase("{name}: arguments added: {added}", name=name, added=added)
+    if not added:
+        return phrase("{name}: arguments removed: {removed}", name=name, removed=removed)
+    return phrase("{name}: arguments {removed} -> {added}", name=name, removed=removed, added=added)
 
 
 def _shows_type(old: SourceName, new: SourceName) -> bool:

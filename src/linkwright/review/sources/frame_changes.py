@@ -22,6 +22,9 @@ _TEXT = re.compile(r"[\"'](?P<text>[^\"'\\]*)[\"']")
 _MAX_VALUE_LENGTH = 80
 _BRANCH = re.compile(r"\A[\s\d]+")
 """The mark of the branch of a statement in Python."""
+_GIVEN = re.compile(rf"\bheader(?:\.|->)frame_id(?: = |\.assign\()({_OBJECT})(?=\)|\s*;?\s*\Z)")
+"""A variable that gives the frame of a message."""
+_MEMBER = re.compile(r"(?:self\.|this->|m_)\w+|[A-Za-z]\w*_")
 _HEADER = re.compile(r"(?:(?:\.|->)|\b)header(?:\.|->)frame_id\Z")
 _SEPARATOR = " | "
 _TEMPLATE = "frame_id of {names}: {old} -> {new}"
@@ -70,7 +73,7 @@ def find_frame_changes(old: Code, new: Code, reported: Sequence[str] = ()) -> It
         for target in before.keys() & after.keys():
             pair = before[target].expressions, after[target].expressions
             is_other = _is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0]) or _is_computed(*pair)
-            is_other = is_other or _is_other_literal(*pair, reported)
+            is_other = is_other or _is_other_literal(*pair, reported) or _is_other_member(*pair, old, new)
             if pair[0] != pair[1] and is_other:
                 groups.setdefault(pair, []).append(target)
         for (old_values, new_values), targets in sorted(groups.items()):
@@ -82,7 +85,8 @@ def find_frame_changes(old: Code, new: Code, reported: Sequence[str] = ()) -> It
             )
             text = _TEXT.fullmatch(old_values[0]) if len(old_values) == 1 else None
             is_transform = any(_is_transform(target, texts[1]) for target in targets)
-            is_harmless = is_transform or (_TEXT.fullmatch(new_values[0]) and not _are_sent(targets, new))
+            is_header = all(map(_HEADER.search, new_values))
+            is_harmless = is_transform or (not is_header and not _are_sent(targets, new))
             reason = None if text is None or is_harmless else message_frame_reason(text["text"])
             yield FrameChange(sentence, min(after[target].line for target in targets), reason)
 
@@ -118,6 +122,25 @@ def _is_other_literal(old: Sequence[str], new: Sequence[str], reported: Sequence
         return False
     names = [match["text"].strip("/") for match in matches if match is not None]
     return names[0] != names[1] and not any(all(f"'{name}'" in line for name in names) for line in reported)
+
+
+def _is_other_member(old: Sequence[str], new: Sequence[str], old_code: Code, new_code: Code) -> bool:
+    """Return whether a literal frame becomes that of a member which gave other frames before.
+
+    Another member may have the literal by default.
+    """
+    text = _TEXT.fullmatch(old[0]) if len(old) == 1 else None
+    if text is None or not all(map(_MEMBER.fullmatch, new)):
+        return False
+    given = {name for parts in old_code.functions.values() for part in parts for name in _find_given(part)}
+    literal = re.compile(rf"[\"']{re.escape(text['text'])}[\"']")
+    parts = (part for items in (*new_code.functions.values(), *new_code.outside.values()) for part in items)
+    return given.issuperset(new) and not any(literal.search(part.text) for part in parts)
+
+
+def _find_given(part: Part) -> list[str]:
+    """Return the variables that give frames of messages in a statement."""
+    return _GIVEN.findall(join_operators(part.text))
 
 
 def drop_told_frames(changes: Sequence[Change]) -> list[Change]:

@@ -32,6 +32,12 @@ def extract_pattern(expression: str) -> str | None:
     return pattern if re.search(r"\w", pattern.replace(_UNKNOWN_PART, "")) else None
 
 
+def is_sum_of_texts(expression: str) -> bool:
+    """Return whether an expression joins texts with others, without calls that give other texts."""
+    is_sum = "+" in _TEXT.sub("", expression) and extract_pattern(expression) is not None
+    return is_sum and set(_CALLED.findall(expression)) <= _JOINING_CALLS
+
+
 def ends_with_name(expression: str, name: str) -> bool:
     """Return whether an expression puts a namespace or another text before a name, as ``prefix + ".name"`` does.
 

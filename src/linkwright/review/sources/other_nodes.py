@@ -21,7 +21,7 @@ def has_only_in_other_nodes(
     """Return whether the package has a name in both versions only in sources of other nodes.
 
     Such a name did not move. Sources that one of the files includes or imports, or that include it, are of the same
-    node. Of parameters, sources count as other nodes, too, if no program is built of both.
+    node. Of parameters, and of an added source, sources count as other nodes, too, if no program is built of both.
 
     Args:
         item: a name that only the other version of a source has.
@@ -31,7 +31,10 @@ def has_only_in_other_nodes(
     """
     return item.kind in _KINDS and (
         _has_only_elsewhere(item, side, other, paths, lambda names: names.makes_node)
-        or (item.kind is NameKind.PARAMETER and _has_only_in_other_programs(item, side, other, paths))
+        or (
+            (item.kind is NameKind.PARAMETER or paths[0] not in side.paths)
+            and _has_only_in_other_programs(item, side, other, paths)
+        )
     )
 
 
@@ -39,14 +42,15 @@ def _has_only_in_other_programs(
     item: SourceName, side: ChangedSources, other: ChangedSources, paths: Sequence[str]
 ) -> bool:
     """Return whether only sources of other programs of the package have a name, in both versions."""
-    package = side.find_package(paths[0])
     owners = side.list_owners(item, paths[0]).keys()
+    sources, path = (side, paths[0]) if paths[0] in side.paths else (other, paths[1])
+    package = sources.find_package(path)
     return (
         package is not None
         and bool(owners)
         and owners <= other.list_owners(item, paths[1]).keys()
-        and not any(_are_connected(side, paths[0], owner) for owner in owners)
-        and are_in_separate_programs(side.version, package, paths[0], owners)
+        and not any(_are_connected(sources, path, owner) for owner in owners)
+        and are_in_separate_programs(sources.version, package, path, owners)
     )
 
 

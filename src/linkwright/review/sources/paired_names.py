@@ -63,8 +63,9 @@ class PairedNames(WholeSourcePair):
         self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
     ) -> list[tuple[SourceName, SourceName]]:
         """Return the pairs of an old and a new name of the same thing."""
-        if kind is NameKind.PARAMETER and old_items and new_items:
-            old_items = [item for item in old_items if not self.is_unread_parameter(item.name)]
+        if kind in (NameKind.PARAMETER, NameKind.HARDWARE_PARAMETER) and old_items and new_items:
+            if kind is NameKind.PARAMETER:
+                old_items = [item for item in old_items if not self.is_unread_parameter(item.name)]
             return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))

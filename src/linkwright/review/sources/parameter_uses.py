@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-_ASSIGNMENT = r"(?P<variable>[A-Za-z_][\w.]*)\s*(?::[^=\n]+)?=(?!=)[^=;\n]*[\"']~?{name}[\"']"
+_ASSIGNMENT = r"(?P<variable>[A-Za-z_][\w.]*)\s*(?::[^=\n]+)?=(?!=)(?:[^=;\n]|(?<=[(,?])\n)*[\"']~?{name}[\"']"
 _OUTPUT = (
     r"\b(?:get_parameter|get_parameter_or|getParam|getParamCached|param)\s*(?:<[^<>()]*>)?"
     r"\(\s*\"~?{name}\"\s*,\s*(?P<variable>[A-Za-z_][\w.]*)\s*[,)]"
 )
 _DECLARATION = re.compile(r"\bdeclare_parameters?\b")
 _PREFIX = re.compile(r"^(?:self|this)(?:\.|->)")
+_BEGUN_ASSIGNMENT = re.compile(r"\?=(?!=).*[(,?]\Z")
+"""An assignment to a variable of a parameter whose value is in the next line."""
 _WORD = re.compile(r"\w+")
 _COMMENT = re.compile(r"(?:^|\s)(?:#(?!\s*(?:include|define|if|endif))|//).*")
 
@@ -92,4 +94,6 @@ def _list_uses(lines: _Lines, name: str, variables: set[str], own: re.Pattern[st
         is_definition = literal.search(line) is not None and (bool(variables) or _DECLARATION.search(line) is not None)
         if used.search(line) and not is_definition:
             text = literal.sub("?", line)
-            yield "".join((text if own is None else own.sub("?", text)).split())
+            use = "".join((text if own is None else own.sub("?", text)).split())
+            if _BEGUN_ASSIGNMENT.match(use) is None:
+                yield use

@@ -246,7 +246,7 @@ def _find_constant_end(tokens: Sequence[Token], index: int) -> int | None:
 def _is_key(tokens: Sequence[Token], last: int) -> bool:
     """Return whether a literal is the key of an entry: ``'angle': 1.57``."""
     is_text = tokens[last].kind is TokenKind.TEXT
-    return is_text and last + 1 < len(tokens) and tokens[last + 1].text == ":"
+    return is_text and last + 2 < len(tokens) and tokens[last + 1].text == ":"
 
 
 def _is_for_readers(tokens: Sequence[Token], first: int, last: int, start: int) -> bool:
