@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, joined, joined_first, phrase
-from linkwright.review.breaking import quote_first, quoted
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted
+from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.list_changes import nested_list_items
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type

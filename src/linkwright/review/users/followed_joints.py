@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from linkwright.review.breaking import joint_name_reason
@@ -35,8 +35,8 @@ def relieve_followed_joints(subjects: Sequence[Subject]) -> list[Subject]:
     ]
 
 
-def _relieve(change: Change, joints: Collection[str]) -> Change:
+def _relieve(change: Change, joints: set[str]) -> Change:
     reason = change.reason
-    if reason is None or reason.template not in _REASONS or not joints >= set(list_names_of_reason(reason)):
+    if reason is None or reason.template not in _REASONS or not joints.issuperset(list_names_of_reason(reason)):
         return change
     return replace(change, effect=Effect.CHANGED, reason=None)
