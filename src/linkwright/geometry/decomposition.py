@@ -96,8 +96,8 @@ def thicken(corners: Array) -> Array:
     return np.concatenate([corners + normal * THICKNESS / 2, corners - normal * THICKNESS / 2])
 
 
-def lies_on_line(corners: Array) -> bool:
-    """Return whether the corners of a piece lie on a line, so that it has no surface."""
+def is_collinear(corners: Array) -> bool:
+    """Return whether the corners of a piece are collinear, so that it has no surface."""
     sizes = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
     return len(sizes) < 2 or float(sizes[1]) <= _MIN_WIDTH
 
