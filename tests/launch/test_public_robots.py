@@ -361,10 +361,10 @@ class TestPrograms:
         assert result.succeeded, result.err
         assert result.messages[0].endswith("/ros2")
 
-    def test_ros_variables_are_set_unless_sourced(self) -> None:
-        unsourced, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
+    def test_ros_variables_are_set_except_those_that_are_set_already(self) -> None:
+        unsourced, chosen = {"A": "b"}, {"ROS_DISTRO": "jazzy", "LD_LIBRARY_PATH": "/opt/ros/jazzy/lib"}
         set_ros_variables(unsourced)
-        set_ros_variables(sourced)
+        set_ros_variables(chosen)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
         assert unsourced == {
             "A": "b",
@@ -373,7 +373,12 @@ class TestPrograms:
             "GZ_SIM_RESOURCE_PATH": "",
             "LD_LIBRARY_PATH": "",
         }
-        assert sourced == {"ROS_DISTRO": "jazzy"}
+        assert chosen == {
+            **of_ros,
+            "ROS_DISTRO": "jazzy",
+            "LD_LIBRARY_PATH": "/opt/ros/jazzy/lib",
+            "GZ_SIM_RESOURCE_PATH": "",
+        }
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         set_ros_variables(models)
         assert models["GZ_SIM_RESOURCE_PATH"] == "/models"

@@ -96,6 +96,13 @@ async def test_velocity_controller_reaches_commanded_velocity(settings):
         assert not log
 
 
+async def test_velocity_controller_holds_level_arm():
+    async with running_server(arm_model(velocity_controller())) as (server, _, log):
+        server.advance(2 * SECOND_NS)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=2e-3)
+        assert not log
+
+
 async def test_second_joint_axis_is_rejected():
     async with running_server(arm_model(position_controller("<joint_index>1</joint_index>"))) as (server, _, log):
         assert not server.plugins("arm")

@@ -13,6 +13,8 @@ from linkwright.geometry.surface_patches import Triangles, split_into_patches
 THICKNESS = 0.02
 """The thickness, in m, of a face that becomes a separate piece."""
 
+_MIN_WIDTH = 1e-6
+"""The maximum width, in m, of a piece that has no surface."""
 _NEARLY_CONVEX_RATIO = 0.95
 """A closed surface that fills at least this fraction of its hull counts as convex."""
 _COPLANAR_TOLERANCE = 1e-4
@@ -92,6 +94,12 @@ def thicken(corners: Array) -> Array:
         return corners
     normal = axes[2] if len(axes) > 2 else np.array([0.0, 0.0, 1.0])
     return np.concatenate([corners + normal * THICKNESS / 2, corners - normal * THICKNESS / 2])
+
+
+def is_collinear(corners: Array) -> bool:
+    """Return whether the corners of a piece are collinear, so that it has no surface."""
+    sizes = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
+    return len(sizes) < 2 or float(sizes[1]) <= _MIN_WIDTH
 
 
 def _find_components(faces: Faces, count: int) -> list[NDArray[np.int64]]:

@@ -70,15 +70,12 @@ def append_programs_to_path(environment: MutableMapping[str, str]) -> None:
 
 
 def set_ros_variables(environment: MutableMapping[str, str]) -> None:
-    """Set the environment variables of ROS 2 that launch files expect, unless ROS 2 is sourced.
+    """Set the environment variables of ROS 2 that launch files expect, except those that are set.
 
-    The values are those of ROS 2 Humble.
+    The values are those of ROS 2 Humble. Launch files append to ``GZ_SIM_RESOURCE_PATH`` and ``LD_LIBRARY_PATH``
+    without checking whether they are set.
     """
     if "ROS_DISTRO" not in environment:
-        environment.update(ROS_VARIABLES)
         environment[ASSUMED_DISTRIBUTION_VARIABLE] = "1"
-        for name in (
-            "GZ_SIM_RESOURCE_PATH",
-            "LD_LIBRARY_PATH",
-        ):  # Launch files append to these variables without checking whether they are set.
-            environment.setdefault(name, "")
+    for name, value in {**ROS_VARIABLES, "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}.items():
+        environment.setdefault(name, value)

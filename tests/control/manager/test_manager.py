@@ -290,7 +290,7 @@ async def test_hardware_initial_states_are_applied(graph, logged):
 async def test_unsupported_hardware_is_replaced_by_mock(graph, logged):
     controller_manager = make_manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert controller_manager.resources.components["arm"].state is ACTIVE
-    assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so mock_components")
+    assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so a mock replaces")
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
@@ -309,23 +309,3 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
         lines[0] == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"
     )
     assert len(lines) == (1 if distribution == "humble" else 2)
-
-
-@pytest.mark.parametrize(
-    ("wheel", "steering", "expected_position"),
-    [("velocity", "velocity", 0.5), ("velocity", "position", 0.5), ("velocity effort", "position", 0.0)],
-)
-async def test_mock_in_place_of_driver_integrates_velocities_of_wheels(graph, wheel, steering, expected_position):
-    text = robot(joint("hip", wheel) + joint("knee", steering)).replace("mock_components/GenericSystem", "acme/Base")
-    parameters = {"type": FORWARD, "joints": ["hip"], "interface_name": "velocity"}
-    manager = make_manager(graph, text, {"wheels.type": FORWARD}, wheels=parameters)
-    assert manager.load("wheels")
-    assert manager.configure("wheels")
-    assert manager.switch(["wheels"], (), STRICT)[0]
-    for command in manager.controllers["wheels"].controller.commands:
-        command.value = 2.0
-    for cycle in range(26):  # The first only reads the velocity.
-        manager.resources.read(cycle * 10_000_000, 0.01)
-    (position,) = manager.resources.states(["hip/position"])
-    assert position.value == pytest.approx(expected_position)
-    manager.close()

@@ -109,6 +109,24 @@ async def test_topics_exist_before_simulation(harness):
     assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
 
 
+TILT = "std_msgs/msg/Float64]gz.msgs.Double@/model/arm/joint/tilt/0/cmd_pos"
+
+
+async def test_gz_topic_whose_name_is_invalid_in_ros_is_bridged(harness):
+    commands = record_messages(harness, "std_msgs/msg/Float64", "/model/arm/joint/tilt/_0/cmd_pos")
+    ParameterBridge(harness.graph, NodeOptions(arguments=[f"/tilt@{TILT}"]))
+    create_publisher(harness, "std_msgs/msg/Float64", "/tilt").publish(get_message("std_msgs/msg/Float64")(data=0.5))
+    await harness.graph.settle()
+    assert [command.data for command in commands] == [0.5]
+
+
+async def test_bridge_that_fails_to_start_leaves_no_node(harness):
+    nodes = harness.graph.node_names()
+    with pytest.raises(LinkwrightError, match="must not start with a number"):
+        ParameterBridge(harness.graph, NodeOptions(arguments=[SCAN, f"/tilt/0@{TILT}"]))
+    assert harness.graph.node_names() == nodes
+
+
 CONTROL, CONTROL_TYPE = "/world/empty/control", "ros_gz_interfaces/srv/ControlWorld"
 
 

@@ -21,6 +21,7 @@ from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
 from tests.simulation.test_ackermann import TRACK_WIDTH, WHEEL_RADIUS, WHEELBASE, car
 from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum_robot
 from tests.simulation.test_plugins import running_server
+from tests.simulation.test_skid_steering import SIDES, skid_robot
 from tests.simulation.worlds import GROUND, mbot
 
 TIMEOUT_S = 0.2
@@ -122,6 +123,20 @@ MECANUM = RobotSetup(
         "reference_timeout": TIMEOUT_S,
     },
 )
+HEAVY_SKID = RobotSetup(
+    "robot",
+    skid_robot(0.4).partition("<plugin")[0].replace("<mass>5.0</mass>", "<mass>90.0</mass>") + "</model>",
+    {f"{end}_{side}_joint": "velocity" for end, side in SIDES},
+    "diff_drive_controller/DiffDriveController",
+    {
+        **{f"{side}_wheel_names": [f"{end}_{side}_joint" for end in ("front", "back")] for side in ("left", "right")},
+        "wheel_separation": 0.4,
+        "wheel_radius": 0.1,
+        "cmd_vel_timeout": TIMEOUT_S,
+    },
+    "/base/cmd_vel",
+    "/base/odom",
+)
 all_drives = pytest.mark.parametrize(
     "robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"]
 )
@@ -217,3 +232,13 @@ async def test_wheels_of_robot_require_one_model_compilation(tmp_path):
     """
     async with start_drive(DIFFERENTIAL, tmp_path) as drive:
         assert drive.server.simulation.revision <= 1
+
+
+async def test_wheels_of_heavy_skid_steered_robot_turn_as_commanded(tmp_path):
+    """Friction holds the wheels back in a turn, but Gazebo sets velocities whatever the friction."""
+    async with start_drive(HEAVY_SKID, tmp_path) as drive:
+        await drive.drive(1.0, 0.3, 0.3)
+        begin, begin_truth = drive.odometry.yaw, drive.truth.yaw
+        await drive.drive(2.0, 0.3, 0.3)
+        assert drive.odometry.yaw - begin == pytest.approx(0.6, rel=0.05)
+        assert drive.truth.yaw - begin_truth == pytest.approx(0.3, rel=0.2)  # the track squared by the diagonal squared

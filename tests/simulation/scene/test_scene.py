@@ -78,6 +78,17 @@ def test_moving_mesh_collides_as_convex_hull(room):
     assert simulation.model_pose("mesh")[2] == pytest.approx(0.0, abs=2e-3)
 
 
+@pytest.mark.parametrize("static", [True, False])
+@pytest.mark.parametrize("scale", ["1 0 0", "0 0 0"])
+def test_mesh_that_its_scale_makes_line_or_point_collides_with_nothing(room, static, scale):
+    text = mesh_model(room, static=static, scale=scale)
+    simulation = make_simulation(GROUND, text.replace(f"<scale>{scale}", "<scale>1 1 1", 2).replace("1 1 1", scale, 1))
+    assert not simulation.scene.diagnostics
+    geoms = [geom for geom in simulation.scene.spec.geoms if geom.type == mujoco.mjtGeom.mjGEOM_MESH]
+    assert len(geoms) == 1, "the visual remains"
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
+
+
 def test_missing_mesh_is_reported_once(tmp_path):
     simulation = make_simulation(GROUND, mesh_model(tmp_path / "none.stl"))
     (diagnostic,) = simulation.scene.diagnostics

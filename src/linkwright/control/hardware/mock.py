@@ -6,7 +6,7 @@ integrated from its active command interface; otherwise each state copies the co
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from math import isnan
 
 from linkwright.control.hardware.component import Hardware, HardwareError
@@ -25,11 +25,25 @@ from linkwright.graph.log.logger import Logger
 _STANDARD_INTERFACES = (POSITION, VELOCITY, ACCELERATION, EFFORT)
 _MODES = (POSITION, VELOCITY, ACCELERATION)
 
+DYNAMICS = "calculate_dynamics"
+"""The parameter that requests joints that are integrated from their active command interface."""
 
-class _Joint:
+
+class MockJoint:
     """A simulated joint with all kinds of states.
 
     Only the states in the description have an interface.
+
+    Args:
+        description: the joint in the description of the hardware.
+        states: the state interfaces of the joint, by kind.
+
+    Attributes:
+        description: the joint in the description of the hardware.
+        mode: the kind of command that moves the joint if dynamics are calculated.
+        exposed_states: the state interfaces of standard kinds.
+        values: the states of all standard kinds.
+        commands: the command interfaces of standard kinds, by kind.
     """
 
     def __init__(self, description: ComponentDescription, states: dict[str, StateInterface]) -> None:
@@ -51,38 +65,38 @@ class GenericSystem(Hardware):
         super().__init__(description, logger)
         is_set = description.is_set
         self._is_disabled = is_set("disable_commands")
-        self._has_dynamics = is_set("calculate_dynamics")
+        self._has_dynamics = is_set(DYNAMICS)
         self._offset = float(description.parameters.get("position_state_following_offset") or 0.0)
         self._offset_interface = description.parameters.get("custom_interface_with_following_offset", "")
         states = {state.name: state for state in self.states}
         self._add_mock_commands("sensor", enabled=is_set("mock_sensor_commands") or is_set("fake_sensor_commands"))
         self._add_mock_commands("gpio", enabled=is_set("mock_gpio_commands") or is_set("fake_gpio_commands"))
-        self._joints = {
-            joint.name: _Joint(joint, {state.kind: state for state in self.states if state.component == joint.name})
+        self.joints = {
+            joint.name: MockJoint(joint, {state.kind: state for state in self.states if state.component == joint.name})
             for joint in description.joints
         }
         self._mirrored_pairs: list[tuple[CommandInterface, StateInterface]] = []
         for command in self.commands:
-            joint = self._joints.get(command.component)
+            joint = self.joints.get(command.component)
             if joint is not None and command.kind in _STANDARD_INTERFACES:
                 joint.commands[command.kind] = command
             elif command.name in states:
                 self._mirrored_pairs.append((command, states[command.name]))
         self._mimic_joints = [
-            (joint, self._joints[joint.description.mimic.joint], joint.description.mimic)
-            for joint in self._joints.values()
-            if joint.description.mimic is not None and joint.description.mimic.joint in self._joints
+            (joint, self.joints[joint.description.mimic.joint], joint.description.mimic)
+            for joint in self.joints.values()
+            if joint.description.mimic is not None and joint.description.mimic.joint in self.joints
         ]
         self._offset_states = [
-            (self._joints[state.component], state)
+            (self.joints[state.component], state)
             for state in self.states
-            if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
+            if self._offset_interface and state.kind == self._offset_interface and state.component in self.joints
         ]
         # Lookups are slow at 1 kHz, so states are copied directly unless dynamics or a mimic joint needs their values.
         coupled = {coupled_joint for joint, mimicked, _ in self._mimic_joints for coupled_joint in (joint, mimicked)}
-        joints = [joint for joint in self._joints.values() if self._has_dynamics or joint in coupled]
-        uncoupled = [joint for joint in self._joints.values() if not self._has_dynamics and joint not in coupled]
-        self._shown_states = [(state, joint.values, state.kind) for joint in joints for state in joint.exposed_states]
+        joints = [joint for joint in self.joints.values() if self._has_dynamics or joint in coupled]
+        uncoupled = [joint for joint in self.joints.values() if not self._has_dynamics and joint not in coupled]
+        self._shown_states = list_shown_states(joints)
         self._commands_to_joints = [
             (command, joint.values, kind, self._get_state_offset(kind))
             for joint in joints
@@ -115,7 +129,7 @@ class GenericSystem(Hardware):
         """
         if not self._has_dynamics:
             return
-        for name in self._joints:
+        for name in self.joints:
             prefix = f"{name}/"
             kinds = [name.removeprefix(prefix) for name in start if name.startswith(prefix)]
             modes = [item for item in kinds if item in _MODES]
@@ -130,7 +144,7 @@ class GenericSystem(Hardware):
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """Set the modes of joints to their started interfaces, if dynamics are calculated."""
-        for name, joint in self._joints.items():
+        for name, joint in self.joints.items():
             for mode in _MODES:
                 if self._has_dynamics and f"{name}/{mode}" in start:
                     joint.mode = mode
@@ -172,13 +186,13 @@ class GenericSystem(Hardware):
                 values[kind] = value + offset
 
     def _integrate(self, period_s: float) -> None:
-        for joint in self._joints.values():
+        for joint in self.joints.values():
             self._integrate_joint(joint, period_s)
             effort = _get_command(joint.commands.get(EFFORT))
             if effort is not None:
                 joint.values[EFFORT] = effort
 
-    def _integrate_joint(self, joint: _Joint, period_s: float) -> None:
+    def _integrate_joint(self, joint: MockJoint, period_s: float) -> None:
         """Integrate a joint over one period from its previous values, as ros2_control does."""
         values = joint.values
         target = _get_command(joint.commands.get(joint.mode))
@@ -202,3 +216,8 @@ class GenericSystem(Hardware):
 def _get_command(command: Interface | None) -> float | None:
     """Return the value of a command, or None if there is no interface or no command."""
     return None if command is None or isnan(command.value) else command.value
+
+
+def list_shown_states(joints: Iterable[MockJoint]) -> list[tuple[StateInterface, dict[str, float], str]]:
+    """Return the exposed states of joints, each with the values and the kind that it shows."""
+    return [(state, joint.values, state.kind) for joint in joints for state in joint.exposed_states]

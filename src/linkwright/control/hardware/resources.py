@@ -6,28 +6,23 @@ Source: the resource manager of ros2_control (rules and messages).
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import replace
 from typing import TypeVar
 
 from linkwright.control.hardware.component import Hardware, hardware_class
 from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.interfaces import (
-    POSITION,
-    VELOCITY,
     CommandInterface,
     Interface,
     Interfaces,
     StateInterface,
 )
-from linkwright.control.hardware.mock import GenericSystem
+from linkwright.control.hardware.replacement import ReplacementSystem
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.log.logger import Logger
 
 HardwareFactory = Callable[[HardwareDescription, Logger], "Hardware | None"]
 """A function that creates the hardware of a description, or returns None if the type is not supported."""
-
-_DYNAMICS = "calculate_dynamics"
 
 N = TypeVar("N", bound=Interface)
 
@@ -81,13 +76,13 @@ class Resources:
             if hardware is None:
                 self._logger.warning(
                     phrase(
-                        "hardware '{name}': Linkwright does not support '{plugin}', so "
-                        "mock_components/GenericSystem replaces it, and its states follow the commands",
+                        "hardware '{name}': Linkwright does not support '{plugin}', so a mock replaces it, "
+                        "and its joints move as the claimed commands say",
                         name=description.name,
                         plugin=description.plugin,
                     )
                 )
-                hardware = GenericSystem(_describe_replacement(description), self._logger)
+                hardware = ReplacementSystem(description, self._logger)
             if description.is_async:
                 self._logger.info(
                     phrase(
@@ -106,6 +101,9 @@ class Resources:
                 (state.name, hardware) for state in (*hardware.states, *hardware.commands)
             )
             self._logger.info(f"Successful initialization of hardware '{description.name}'")
+        replacements = [item for item in self.components.values() if isinstance(item, ReplacementSystem)]
+        for replacement in replacements:
+            replacement.show_joints_of(replacements)
 
     # --- interfaces ---------------------------------------------------------------------------------------------------
 
@@ -307,15 +305,3 @@ def _describe_error(error: Exception) -> str:
     if isinstance(error, LinkwrightError):
         return str(error.diagnostics[0].message)
     return f"{type(error).__name__}: {error}"
-
-
-def _describe_replacement(description: HardwareDescription) -> HardwareDescription:
-    """Return the description of the mock that replaces unsupported hardware.
-
-    If each joint has a single command, a position or a velocity, as steering joints and wheels have, the mock
-    integrates the velocities to positions.
-    """
-    commands = [{command.name for command in joint.commands} for joint in description.joints if joint.commands]
-    if {VELOCITY} not in commands or any(kinds not in ({POSITION}, {VELOCITY}) for kinds in commands):
-        return description
-    return replace(description, parameters={_DYNAMICS: "true", **description.parameters})

@@ -96,8 +96,12 @@ class _Bridge(SingleNode):
         # Remappings do not apply to gz names, so the gz side has its own, hidden node.
         self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
         self._publishers: list[Publisher[Any]] = []
-        for topic in topics:
-            self._bridge_topic(topic)
+        try:
+            for topic in topics:
+                self._bridge_topic(topic)
+        except LinkwrightError:  # The caller destroys the other node.
+            self._gz_node.destroy_node()
+            raise
 
     def close(self) -> None:
         """Destroy both nodes of the bridge."""
@@ -111,7 +115,7 @@ class _Bridge(SingleNode):
             self._node.get_logger().warning(f"{topic.ros_topic} is not bridged: there is no type {topic.ros_type}")
             return
         gz_type = DEFAULT_ROS_TYPES.get(topic.gz_type, topic.ros_type)
-        gz_topic = "/" + self._resolve_gz_name(topic.gz_topic).lstrip("/")
+        gz_topic = to_ros_name("/" + self._resolve_gz_name(topic.gz_topic).lstrip("/"))
         has_same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
         if topic.ros_type == _CLOCK_TYPE:  # The simulation publishes /clock itself.
             return

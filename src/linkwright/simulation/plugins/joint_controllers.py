@@ -14,12 +14,11 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.actuators import EXACT_VELOCITY_GAIN
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_MOTOR_GAIN = 20.0
-"""The gain of a joint motor, in N m of torque per rad/s of velocity error."""
 _DEFAULT_MAX_COMMAND = 1000.0
 """The default of ``cmd_max`` in gz: no limit."""
 
@@ -188,7 +187,9 @@ class GzJointVelocity(_JointController[VelocityParameters]):
         self._find_joints()
         self._motors = []
         if not self.parameters.use_force_commands:
-            self._motors = [self.simulation.add_velocity_motor(joint, _MOTOR_GAIN, inf) for joint in self._joints]
+            self._motors = [
+                self.simulation.add_velocity_motor(joint, EXACT_VELOCITY_GAIN, inf) for joint in self._joints
+            ]
         self._subscribe_to_commands("cmd_vel")
         if self.parameters.use_force_commands:
             self.every(0.0, lambda: self._apply_forces(1))

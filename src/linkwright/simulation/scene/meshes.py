@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.decomposition import convex_pieces, thicken
+from linkwright.geometry.decomposition import convex_pieces, is_collinear, thicken
 from linkwright.geometry.mesh_files import BadMeshError, count_declared_triangles, create_file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable_mesh_error
@@ -152,7 +152,7 @@ class MeshLibrary:
             pieces = convex_pieces(vertices, faces, _MAX_PIECES, _MAX_PATCHES)
         else:
             pieces = ([] if rolls else split_into_hulls(vertices, faces)) or [vertices[np.unique(faces)]]
-        return [thicken(corners) for corners in pieces]
+        return [thicken(corners) for corners in pieces if not is_collinear(corners)]
 
     def _add_visual_meshes(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
         try:

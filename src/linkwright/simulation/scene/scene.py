@@ -37,6 +37,8 @@ _LOOP_STEPS = 4.0
 """The time constant of constraints that close a loop, in time steps."""
 _MAX_ROLLING_WHEELS = 2
 """The maximum number of driven wheels on a link that can roll. With more, some wheels slip in every turn."""
+_MAX_ROTOR = 20.0
+"""The maximum inertia of a motor's rotor in kg m2, divided by the time step in s."""
 _MAX_SPEED_CHANGE = 1.0
 """The maximum change of a free wheel's speed in rad/s that a motor causes within a step.
 
@@ -328,7 +330,7 @@ class Scene:
         """
         actuator = self._add_actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
-        self.enable_rolling(joint, min(limit / _MAX_SPEED_CHANGE, gain))
+        self.enable_rolling(joint, min(limit / _MAX_SPEED_CHANGE, gain, _MAX_ROTOR))
         return str(actuator.name)
 
     def speed_limit(self, joint: str) -> float:

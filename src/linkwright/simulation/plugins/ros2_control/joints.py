@@ -9,11 +9,14 @@ from types import MappingProxyType
 from linkwright.control.hardware.description import ComponentDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
 from linkwright.control.motion.pid import Pid
-from linkwright.simulation.actuators import Motor, Servo
+from linkwright.simulation.actuators import EXACT_VELOCITY_GAIN, Motor, Servo
 from linkwright.simulation.simulation import Simulation
 
-_VELOCITY_GAIN = 20.0
-"""The velocity gain of motors, in N m per rad/s of velocity error (N per m/s for prismatic joints)."""
+_MIN_VELOCITY_GAIN = 20.0
+"""The minimum velocity gain of motors, in N m per rad/s of velocity error (N per m/s for prismatic joints).
+
+A motor that reaches its effort limit at a smaller error than 1 rad/s would switch between both limits.
+"""
 _MAX_SERVO_SPEED = 1000.0
 """The maximum speed of servos in rad/s, or in m/s for prismatic joints."""
 
@@ -67,7 +70,8 @@ class SimulatedJoint:
         self._motor: Motor | None = None
         self._servo: Servo | None = None
         if VELOCITY in commands and VELOCITY not in pids:
-            self._motor = simulation.add_velocity_motor(name, _VELOCITY_GAIN, self._max_effort)
+            gain = min(max(self._max_effort, _MIN_VELOCITY_GAIN), EXACT_VELOCITY_GAIN)
+            self._motor = simulation.add_velocity_motor(name, gain, self._max_effort)
         if (POSITION in commands and POSITION not in pids) or (
             self._accepts_forces and self._motor is None and holds_position
         ):
