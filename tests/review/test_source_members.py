@@ -22,7 +22,8 @@ def test_the_only_node_of_a_source_is_renamed_although_another_file_has_the_new_
 
 
 def test_an_added_node_with_a_computed_name_is_told_with_names_that_another_node_has(repository, compare):
-    text = "import rospy\nrospy.init_node({})\np = rospy.Publisher('out', Bool, queue_size=1)\n"
+    imports = "import rospy\nfrom names import Bool, make_name\n"
+    text = imports + "rospy.init_node({})\np = rospy.Publisher('out', Bool, queue_size=1)\n"
     repository.commit({**MANIFEST, "arm/a.py": text.format("'arm'")})
     repository.write({"arm/b.py": text.format("make_name()")})
     (found,) = compare(repository).subjects
@@ -47,7 +48,9 @@ def test_the_period_of_a_timer_of_ros_1_is_told(repository, compare, call):
 
 def test_the_periods_of_an_added_node_are_told(repository, compare):
     repository.commit(MANIFEST)
-    repository.write({"arm/a.py": TIMER + "rospy.Timer(rospy.Duration(0.2), f)\nrate = rospy.Rate(10)\n"})
+    repository.write(
+        {"arm/a.py": TIMER + "from arm import f\nrospy.Timer(rospy.Duration(0.2), f)\nrate = rospy.Rate(10)\n"}
+    )
     (found,) = compare(repository).subjects
     assert sentences(found) == ["nodes added: 'arm'", "rates and periods: Timer(rospy.Duration(0.2)), Rate(10)"]
 

@@ -36,6 +36,8 @@ _OUTPUT_CALLS = frozenset({"param", "getParam", "get_parameter", "get_parameter_
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
 _CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _ARITHMETIC = frozenset("+-*/")
+_PROGRAM_NAME = "__main__"
+"""The name of a module of Python that is run as a program, which is no key."""
 _NO_VALUES = ("None", "nullptr", "NULL")
 _CHANGES = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":=", "++", "--", "in", ","})
 """The tokens after a name that a statement assigns or changes, such as the name of a loop."""
@@ -184,7 +186,7 @@ def _find_keys(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSidedTe
             for token in statement.tokens[literal.first : literal.last + 1]:
                 match = _QUOTED.search(token.text) if token.kind is TokenKind.TEXT else None
                 word = (match[1] or match[2] or "") if match is not None else ""
-                if any(character.isalnum() for character in word):
+                if word != _PROGRAM_NAME and any(character.isalnum() for character in word):
                     yield OneSidedText(shown, word, token)
 
 
