@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from linkwright.diagnostics import SourceText
 from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.interface_uses import WHOLE, InterfaceUse, LostInterface
-from linkwright.review.sources.passed_variables import find_passed
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.source_nodes import SERVICES, SourceNodes, get_function_name
 
@@ -63,7 +62,7 @@ class _UseFinder:
         variables = list(self._find_variables())
         for function, variable, part in variables:  # the loop appends to the list
             yield from self._find_accesses(function, variable, part)
-            passed = [(item, name, part) for item, name in find_passed(self._nodes.tree, function, variable)]
+            passed = [(item, name, part) for item, name in self._nodes.passed.find(function, variable)]
             variables += [item for item in passed if item not in variables]
 
     def _read_import(self, node: ast.ImportFrom) -> Iterator[InterfaceUse]:

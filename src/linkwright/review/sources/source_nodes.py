@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from linkwright.packages.readers.python_values import called_name
+from linkwright.review.sources.passed_variables import PassedVariables
 
 SERVICES = frozenset({"Service", "create_service"})
 """The functions that offer a service."""
@@ -23,17 +24,17 @@ _Function = (ast.FunctionDef, ast.AsyncFunctionDef)
 class SourceNodes:
     """The nodes of a syntax tree, by their use. Each list is in the order of `ast.walk` and made when first needed.
 
-    Attributes:
+    Args:
         tree: the syntax tree. It must not change.
     """
 
     def __init__(self, tree: ast.Module) -> None:
-        self.tree = tree
+        self._tree = tree
         self._scope_nodes: dict[int, list[ast.AST]] = {}
 
     @cached_property
     def _nodes(self) -> list[ast.AST]:
-        return list(ast.walk(self.tree))
+        return list(ast.walk(self._tree))
 
     @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:
@@ -112,6 +113,11 @@ class SourceNodes:
             nodes = list(ast.walk(scope) if isinstance(scope, ast.ClassDef) else _walk_scope(scope))
             self._scope_nodes[id(scope)] = nodes
         return nodes
+
+    @cached_property
+    def passed(self) -> PassedVariables:
+        """The functions to which other functions pass variables."""
+        return PassedVariables(self._tree)
 
     @cached_property
     def guarded(self) -> set[int]:
