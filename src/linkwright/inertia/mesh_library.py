@@ -92,7 +92,7 @@ class MeshLibrary:
         """
         try:
             path = self.locate(uri, element)
-            key = _find_key(path, os.path.realpath(path))[0]
+            key = _find_key(path, os.path.realpath(path))
         except (LinkwrightError, OSError):
             return None
         return key if len(key) == 2 else None
