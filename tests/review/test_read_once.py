@@ -12,7 +12,7 @@ from linkwright.lint.affected import TextFiles
 from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
-from linkwright.review.sources import passed_variables, python_interface_uses, reading, source_nodes
+from linkwright.review.sources import passed_variables, python_interface_uses, python_statements, reading, source_nodes
 from linkwright.sdf.resources import ResourceFinder
 from tests.review.test_scene_images import make_stl
 
@@ -209,6 +209,16 @@ def test_source_with_several_interfaces_is_searched_once_for_each_fact(repositor
     assert len(parsed) == 1
     assert len(scopes) == 1
     assert len(walked) == len({id(scope) for (scope,) in walked}) == 3  # the module and both functions
+
+
+def test_statements_of_a_python_source_are_read_once(package, compare, monkeypatch):
+    path = "arm_description/scripts/a.py"
+    text = "import subprocess\n\nLIMIT = {0}\n\n\ndef run(data):\n    subprocess.run('ls {0}')\n    return data['x']\n"
+    package.commit({path: text.format(1)})
+    package.write({path: text.format(2)})
+    calls = record_calls(monkeypatch, python_statements, "parse_source")
+    assert compare(package, "HEAD").subjects
+    assert len(calls) == 2
 
 
 def test_next_review_reads_a_changed_working_tree(package, compare):
