@@ -12,7 +12,7 @@ from linkwright.lint.affected import TextFiles
 from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
-from linkwright.review.sources import reading
+from linkwright.review.sources import passed_variables, python_interface_uses, python_statements, reading, source_nodes
 from linkwright.sdf.resources import ResourceFinder
 from tests.review.test_scene_images import make_stl
 
@@ -104,6 +104,47 @@ def test_mesh_that_both_versions_have_is_read_once(repository, monkeypatch):
     assert len(reads) == 1
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('<mass value="1"', '<mass value="2"', ["mass"]),
+        ('<mesh filename="package://w/meshes/base.stl"/>', '<box size="5 5 5"/>', ["size"]),
+        ("base.stl", "tall.stl", ["size"]),
+        ('base.stl"', 'base.stl" scale="2 2 2"', ["size"]),
+        ("<visual>", '<visual><origin rpy="0.5 0 0"/>', ["size"]),
+    ],
+)
+def test_size_is_measured_only_if_shapes_changed(repository, compare, monkeypatch, old, new, expected):
+    sizes = record_calls(monkeypatch, figures.RobotMeasures, "_compute_bounds")
+    stls = {"w/meshes/base.stl": make_stl(1.25), "w/meshes/tall.stl": make_stl(3.25)}
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": ARM.format(PARTS), **stls})
+    repository.write({"w/urdf/arm.urdf": ARM.format(PARTS).replace(old, new, 1)})
+    (subject,) = compare(repository).subjects
+    names = [str(figure.name) for figure in subject.figures]
+    assert [name for name in names if name in ("size", "mass")] == expected
+    assert bool(sizes) == ("size" in expected)
+
+
+def test_mesh_of_the_same_name_with_other_triangles_is_measured(repository, compare):
+    repository.commit(
+        {"w/package.xml": PACKAGE, "w/urdf/arm.urdf": ARM.format(PARTS), "w/meshes/base.stl": make_stl(1.75)}
+    )
+    repository.write({"w/meshes/base.stl": make_stl(2.75)})
+    figures_by_path = {subject.path: subject.figures for subject in compare(repository).subjects}
+    assert "size" in [str(figure.name) for figure in figures_by_path["w/urdf/arm.urdf"]]
+
+
+def test_no_mesh_is_measured_if_another_one_is_missing(repository, compare, monkeypatch):
+    loads = record_calls(monkeypatch, MeshLibrary, "load")
+    visual = "<visual><geometry><mesh filename='package://w/meshes/lost.stl'/></geometry></visual></link>"
+    text = ARM.format(PARTS).replace("</link>", visual, 1)
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": make_stl(1.0)})
+    repository.write({"w/urdf/arm.urdf": text.replace('<mass value="1"', '<mass value="2"')})
+    (subject,) = compare(repository).subjects
+    assert [str(figure.name) for figure in subject.figures] == ["mass"]
+    assert loads == []
+
+
 def test_reach_is_not_searched_for_if_no_joint_changed(repository, monkeypatch):
     monkeypatch.setattr("linkwright.review.robots.figures.compare_reaches", None)
     text = ARM.format(PARTS)
@@ -151,6 +192,33 @@ def test_each_source_is_read_once(package, compare, monkeypatch):
     assert len(compare(package, "HEAD~1..HEAD").subjects) == 3
     paths = [source.name for source, _ in calls]
     assert len(paths) == len(set(paths)) == 6
+
+
+def test_source_with_several_interfaces_is_searched_once_for_each_fact(repository, compare, monkeypatch):
+    names = ("Speed", "State", "Limit")
+    lines = [f"    {name.lower()} = {name}()\n    show({name.lower()})\n" for name in names]
+    text = (
+        f"from w.msg import {', '.join(names)}\n\n\ndef drive():\n{''.join(lines)}\n\ndef show(item):\n    item.x = 1\n"
+    )
+    repository.commit({"w/package.xml": PACKAGE, **{f"w/msg/{name}.msg": "int32 x\n" for name in names}})
+    repository.write({"w/scripts/drive.py": text})
+    parsed = record_calls(monkeypatch, python_interface_uses, "parse_source")
+    scopes = record_calls(monkeypatch, passed_variables, "_list_passed")
+    walked = record_calls(monkeypatch, source_nodes, "_walk_scope")
+    compare(repository)
+    assert len(parsed) == 1
+    assert len(scopes) == 1
+    assert len(walked) == len({id(scope) for (scope,) in walked}) == 3  # the module and both functions
+
+
+def test_statements_of_a_python_source_are_read_once(package, compare, monkeypatch):
+    path = "arm_description/scripts/a.py"
+    text = "import subprocess\n\nLIMIT = {0}\n\n\ndef run(data):\n    subprocess.run('ls {0}')\n    return data['x']\n"
+    package.commit({path: text.format(1)})
+    package.write({path: text.format(2)})
+    calls = record_calls(monkeypatch, python_statements, "parse_source")
+    assert compare(package, "HEAD").subjects
+    assert len(calls) == 2
 
 
 def test_next_review_reads_a_changed_working_tree(package, compare):

@@ -49,14 +49,20 @@ class TriangleMesh:
         """The bounding box of the triangles, in m."""
         if not len(self.faces):
             return Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        is_used = np.zeros(len(self.vertices), dtype=bool)
-        is_used[self.faces.ravel()] = True
-        used_vertices = self.vertices[is_used]
+        used_vertices = self.used_vertices
         (left, front, bottom), (right, back, top) = (
             used_vertices.min(axis=0).tolist(),
             used_vertices.max(axis=0).tolist(),
         )
         return Bounds((left, front, bottom), (right, back, top))
+
+    @property
+    def used_vertices(self) -> Array:
+        """The corners of triangles in m, in the order of `vertices` and each once; shape (corners, 3)."""
+        is_used = np.zeros(len(self.vertices), dtype=bool)
+        is_used[self.faces.ravel()] = True
+        used_vertices: Array = self.vertices[is_used]
+        return used_vertices
 
     @property
     def count(self) -> int:

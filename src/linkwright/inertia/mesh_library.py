@@ -85,6 +85,18 @@ class MeshLibrary:
             raise mesh_or_error
         return mesh_or_error
 
+    def find_content_key(self, uri: str, element: Element | None = None) -> ContentKey | None:
+        """Return a key that is equal for files with the same triangles, without reading the triangles.
+
+        The result is None if the file is not found, or if its triangles may be in other files.
+        """
+        try:
+            path = self.locate(uri, element)
+            key = _find_key(path, os.path.realpath(path))
+        except (LinkwrightError, OSError):
+            return None
+        return key if len(key) == 2 else None
+
     def load(self, mesh: Mesh, element: Element | None = None) -> TriangleMesh:
         """Return the triangles of a URDF mesh, scaled, in the frame of its visual or collision.
 
@@ -150,18 +162,28 @@ def _read_cached(path: Path, real_path: str) -> TriangleMesh:
     if path.suffix.lower() in (".glb", ".gltf"):
         return read_mesh(path)
     try:
-        file_status = os.stat(real_path)  # noqa: PTH116 - a path that is already text
+        key = _find_key(path, real_path)
     except OSError:
         return read_mesh(path)  # This raises an error with the reason.
-    file_key = real_path, file_status.st_mtime_ns, file_status.st_size
-    key = _CONTENT_KEYS.get(file_key)
-    if key is None:
-        key = _CONTENT_KEYS[file_key] = shape_key(path) or file_key
     mesh = _MESH_CACHE.values.get(key)
     if mesh is None:
         mesh = read_mesh(path)
         _MESH_CACHE.store(key, mesh)
     return mesh
+
+
+def _find_key(path: Path, real_path: str) -> _FileKey | ContentKey:
+    """Return the key of a file in `_MESH_CACHE`.
+
+    Raises:
+        OSError: the status of the file cannot be read.
+    """
+    file_status = os.stat(real_path)  # noqa: PTH116 - a path that is already text
+    file_key = real_path, file_status.st_mtime_ns, file_status.st_size
+    key = _CONTENT_KEYS.get(file_key)
+    if key is None:
+        key = _CONTENT_KEYS[file_key] = shape_key(path) or file_key
+    return key
 
 
 _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cached_property, partial
 
 import numpy as np
@@ -19,7 +19,7 @@ from linkwright.review.changes import Figure
 from linkwright.review.frames import to_matrix
 from linkwright.review.quantities import compare_quantity
 from linkwright.review.robots.reach import Chain, compare_reaches, have_equal_distances
-from linkwright.urdf import Collision, Mesh, Robot, Visual
+from linkwright.urdf import Collision, Link, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
 _REACH_SAMPLES = 2_000
@@ -37,6 +37,10 @@ def compare_figures(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     """Yield the quantities that differ between two robots."""
     for name, unit, measure in _QUANTITIES:
         yield from compare_quantity(name, unit, measure(old), measure(new))
+    if old.visuals_key is None or old.visuals_key != new.visuals_key:
+        yield from compare_quantity(phrase("size"), "m", old.size, new.size)
+    if old.meshes_key is None or old.meshes_key != new.meshes_key:
+        yield from _compare_mesh_files(old.mesh_files, new.mesh_files)
     old_chains, new_chains = old.chains(), new.chains()
     common = [link for link in new_chains if link in old_chains]
     if common:
@@ -46,6 +50,13 @@ def compare_figures(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
                 continue
             reach = compare_reaches(old_chains[link], new_chains[link], *samples)
             yield from compare_quantity(phrase("reach of '{link}'", link=link), "m", *reach)
+
+
+def _compare_mesh_files(old: tuple[int, int] | None, new: tuple[int, int] | None) -> Iterator[Figure]:
+    """Yield the numbers of triangles and of bytes that differ."""
+    if old is not None and new is not None:
+        yield from compare_quantity(phrase("triangles of the meshes"), "", old[0], new[0])
+        yield from compare_quantity(phrase("bytes of the meshes"), "", old[1], new[1])
 
 
 class RobotMeasures:
@@ -97,11 +108,31 @@ class RobotMeasures:
         return combine(parts)
 
     @cached_property
+    def visuals_key(self) -> tuple[Hashable, ...] | None:
+        """A key that is equal for robots of the same size, without reading the triangles of meshes.
+
+        The result is None if the triangles must be read.
+        """
+        keys: list[Hashable] = []
+        for name, frame in self.frames.items():
+            for visual in self.robot.links[name].visuals:
+                geometry: Hashable = visual.geometry
+                if isinstance(visual.geometry, Mesh):
+                    content = self.meshes.find_content_key(visual.geometry.filename, visual.element)
+                    if content is None:
+                        return None
+                    geometry = content, visual.geometry.scale
+                keys.append((frame.tobytes(), visual.origin, geometry))
+        return tuple(keys)
+
+    @cached_property
     def size(self) -> Array | None:
         """The lengths of the box around all visuals in m, shape (3,).
 
         The result is None if a mesh cannot be read, or if there are no visuals.
         """
+        if not self._has_files(shape for name in self.frames for shape in self.robot.links[name].visuals):
+            return None  # before the other meshes are read
         boxes = []
         for name, frame in self.frames.items():
             for visual in self.robot.links[name].visuals:
@@ -117,21 +148,48 @@ class RobotMeasures:
     @cached_property
     def mesh_files(self) -> tuple[int, int] | None:
         """The number of triangles and of bytes of all mesh files, or None if a mesh cannot be read."""
+        if not self._has_files(shape for link in self.robot.links.values() for shape in _list_shapes(link)):
+            return None
         triangles = size = 0
-        elements: dict[str, Element | None] = {}
-        for link in self.robot.links.values():
-            shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
-            for shape in shapes:
-                if isinstance(shape.geometry, Mesh):
-                    elements[shape.geometry.filename] = shape.element
         try:
-            for uri, element in elements.items():
+            for uri, element in self._mesh_elements.items():
                 path = self.meshes.locate(uri, element)
                 triangles += self.meshes.read(path).count
                 size += path.stat().st_size
         except (LinkwrightError, OSError):
             return None
         return triangles, size
+
+    @cached_property
+    def meshes_key(self) -> tuple[Hashable, ...] | None:
+        """A key that is equal for robots with the same `mesh_files`, without reading the triangles.
+
+        The result is None if the triangles must be read.
+        """
+        keys = [self.meshes.find_content_key(uri, element) for uri, element in self._mesh_elements.items()]
+        return None if None in keys else tuple(keys)
+
+    @cached_property
+    def _mesh_elements(self) -> dict[str, Element | None]:
+        """The last visual or collision with each mesh file, by the URI of the file."""
+        elements: dict[str, Element | None] = {}
+        for link in self.robot.links.values():
+            for shape in _list_shapes(link):
+                if isinstance(shape.geometry, Mesh):
+                    elements[shape.geometry.filename] = shape.element
+        return elements
+
+    def _has_files(self, shapes: Iterable[Visual | Collision]) -> bool:
+        """Return whether all meshes among some shapes are files that exist."""
+        meshes = ((shape.geometry, shape.element) for shape in shapes)
+        try:
+            return all(
+                self.meshes.locate(mesh.filename, element).is_file()
+                for mesh, element in meshes
+                if isinstance(mesh, Mesh)
+            )
+        except (LinkwrightError, OSError):
+            return False
 
     def chains(self) -> dict[str, Chain]:
         """Return the chains of several moving joints, by the name of their last link."""
@@ -236,10 +294,14 @@ class RobotMeasures:
                 return None
             if not mesh.count:
                 return center, center
-            points = mesh.vertices[np.unique(mesh.faces)] @ rotation.T + center
+            points = mesh.used_vertices @ rotation.T + center
             return points.min(axis=0), points.max(axis=0)
         half = _compute_half_lengths(visual.geometry, rotation)
         return center - half, center + half
+
+
+def _list_shapes(link: Link) -> tuple[Visual | Collision, ...]:
+    return (*link.visuals, *link.collisions)
 
 
 def _compute_half_lengths(shape: SimpleShape, rotation: Array) -> Array:
@@ -275,8 +337,5 @@ _QUANTITIES: tuple[tuple[Phrase, str, Callable[[RobotMeasures], object]], ...] =
     (phrase("mass"), "kg", lambda measures: measures.mass_properties.mass),
     (phrase("center of mass"), "m", _get_center_of_mass),
     (phrase("principal moments of inertia"), "kg m2", _compute_principal_moments),
-    (phrase("size"), "m", lambda measures: measures.size),
-    (phrase("triangles of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[0]),
-    (phrase("bytes of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[1]),
 )
-"""The quantities: their names, their units, and the functions that measure them."""
+"""The quantities that need no meshes: their names, their units, and the functions that measure them."""

@@ -158,7 +158,9 @@ def _find_one_sided(
     if source is None:
         return []
     try:
-        scopes = read_cpp_statements(source.text) if path.suffix in CPP_SUFFIXES else read_python_statements(source)
+        scopes = (
+            read_cpp_statements(source.text) if path.suffix in CPP_SUFFIXES else read_python_statements(source.text)
+        )
     except (ValueError, SyntaxError, RecursionError):
         return []
     items = {item.word: item for item in reversed(list(find(scopes)))}

@@ -68,7 +68,7 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
     is_cpp = new_path.suffix in CPP_SUFFIXES
     try:
         old, new = (
-            read_cpp_statements(source.text) if is_cpp else read_python_statements(source)
+            read_cpp_statements(source.text) if is_cpp else read_python_statements(source.text)
             for source in (old_source, new_source)
         )
     except (ValueError, SyntaxError, RecursionError):

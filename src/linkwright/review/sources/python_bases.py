@@ -7,6 +7,7 @@ import builtins
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.names import SourceName
 from linkwright.review.sources.shared_constants import find_own_module, read_module
 
@@ -113,6 +114,8 @@ _KNOWN_BASES: Mapping[tuple[str, str], frozenset[str]] = {
 """The public names of classes of other packages and built-in classes, by module and class."""
 _DYNAMIC_NAMES = frozenset({"__getattr__", "__getattribute__"})
 _MAX_DEPTH = 8
+_MAX_TREES = 256
+"""The maximum number of syntax trees whose imports are kept. A source can use many classes."""
 
 
 def find_inherited_names(path: Path, tree: ast.Module, definition: ast.ClassDef, depth: int = 0) -> set[str] | None:
@@ -217,18 +220,24 @@ def _find_base_names(path: Path, tree: ast.Module, base: str, depth: int) -> set
 def _find_import(tree: ast.Module, base: str) -> tuple[str, str, int]:
     """Return the module and name of a base class, and the number of dots before the module."""
     prefix, _, name = base.rpartition(".")
-    for node in ast.walk(tree):
+    for node in _list_imports(tree):
         if isinstance(node, ast.ImportFrom):
             for alias in node.names:
                 if not prefix and (alias.asname or alias.name) == name:
                     return node.module or "", alias.name, node.level
                 if prefix and (alias.asname or alias.name) == prefix:
                     return f"{node.module}.{alias.name}" if node.module else alias.name, name, node.level
-        elif isinstance(node, ast.Import) and prefix:
+        elif prefix:
             for alias in node.names:
                 if (alias.asname or alias.name) == prefix:
                     return alias.name, name, 0
     return prefix, name, 0
+
+
+@cached_in_review(maxsize=_MAX_TREES)
+def _list_imports(tree: ast.Module) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Return the imports of a source, also those inside of functions."""
+    return tuple(node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
 
 
 def _list_names(definition: ast.ClassDef) -> set[str]:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.names import PYTHON_SUFFIX, OwnUse
 from linkwright.review.sources.python_bases import find_class, find_inherited_names
 from linkwright.review.versions import Version
@@ -15,6 +16,8 @@ _DYNAMIC_NAMES = frozenset({"setattr", "__dict__", "__getattr__", "__getattribut
 """The names with which a class can get further attributes."""
 _LOOKUPS = ("hasattr", "getattr")
 _MAX_DEPTH = 8
+_MAX_TREES = 256
+"""The maximum number of syntax trees whose properties are kept. A source can have many classes."""
 
 
 def find_defined_attributes(tree: ast.AST) -> Iterator[str]:
@@ -85,6 +88,7 @@ def is_defined_by_others(version: Version, path: str, use: OwnUse, name: str) ->
     return any(use.class_name in text and definition.search(text) is not None for text in texts)
 
 
+@cached_in_review(maxsize=_MAX_TREES)
 def _is_dynamic(tree: ast.Module) -> bool:
     """Return whether a source can give objects attributes that it does not name."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import SourceText
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.statements import Statement, parse_statement
 from linkwright.review.sources.tokens import tokenize_python
@@ -19,15 +20,17 @@ _OUTPUT = re.compile(
 """The functions whose strings are for human readers."""
 
 
-def read_python_statements(source: SourceText) -> dict[str, list[Statement]]:
+@cached_in_review(maxsize=8)
+def read_python_statements(text: str) -> Mapping[str, Sequence[Statement]]:
     """Return the statements of a source by function or class.
 
-    Statements of the module have an empty name.
+    Statements of the module have an empty name. The result is kept, because several comparisons in a row read the same
+    two sources.
 
     Raises:
         SyntaxError: the text is neither Python 3 nor Python 2.
     """
-    python = parse_source(source)
+    python = parse_source(SourceText("", text))
     functions: dict[str, list[Statement]] = {}
     text = python.source.text
     line_starts = [0]

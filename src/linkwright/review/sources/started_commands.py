@@ -80,7 +80,9 @@ def _read_commands(path: Path) -> list[_Command]:
     if source is None:
         return []
     try:
-        scopes = read_cpp_statements(source.text) if path.suffix in CPP_SUFFIXES else read_python_statements(source)
+        scopes = (
+            read_cpp_statements(source.text) if path.suffix in CPP_SUFFIXES else read_python_statements(source.text)
+        )
     except (ValueError, SyntaxError, RecursionError):
         return []
     return sorted(_find_commands(scopes), key=lambda item: item.token.start)
