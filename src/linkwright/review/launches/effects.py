@@ -22,7 +22,7 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.argument_uses import had_action
 from linkwright.review.launches.chosen_texts import is_choice
-from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
+from linkwright.review.launches.conditions import evaluate_condition, find_added_terms, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
     find_lost_target_reason,
@@ -333,7 +333,12 @@ def find_setting_reason(
         reversed_argument = find_reversed_argument(old or "", new or "")
         if reversed_argument is not None and all(other.name != entry.name for other in others):
             return phrase("the argument '{name}' has the opposite meaning now", name=reversed_argument)
-        return phrase("by default, it no longer starts") if old_holds and is_stopped else None
+        if old_holds and is_stopped:
+            return phrase("by default, it no longer starts")
+        added = find_added_terms(old or "", new or "") if all(other.name != entry.name for other in others) else ""
+        if added and evaluate_condition(new_outline.resolve(added)) is False:
+            return phrase("with the arguments that started it before, it no longer starts by default")
+        return None
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
