@@ -91,3 +91,20 @@ def test_a_program_with_a_window_that_no_longer_starts_by_default_is_told(review
     end = "; by default, it no longer starts" if default == "false" else ""
     assert changes[0] == f"node 'rviz2/rviz2': condition if $(var gui) -> if $(var rviz){end}"
     assert found_breaking == []
+
+
+@pytest.mark.parametrize(
+    ("default", "other", "is_told"),
+    [("false", "", True), ("true", "", False), ("false", '<node pkg="arm" exec="arm" unless="$(var queue)"/>', False)],
+)
+def test_a_further_condition_that_is_false_by_default_stops_a_node_of_another_choice(
+    review_changes, default, other, is_told
+):
+    text = f"""<launch>
+      <arg name="kind" default="plain"/><arg name="queue" default="{default}"/>
+      <group if="$(eval &quot;'$(var kind)' == 'long'&quot;)"><node pkg="arm" exec="arm"/></group>
+    </launch>"""
+    node = '<node pkg="arm" exec="arm"/>'
+    new = node.replace("/>", ' if="$(var queue)"/>') + other
+    _, found_breaking = review_changes("arm.launch.xml", text, node, new)
+    assert any("condition" in line for line in found_breaking) is is_told

@@ -41,7 +41,7 @@ def generate_launch_description():
             "",
             "process 'python3': command [python3, make.py, --sim (if `sim == 'true'`), --out, x] -> [python3,",
         ),
-        ('"--out", "x"', '"--out", "y"', "process 'python3': command: y added, x removed"),
+        ('"--out", "x"', '"--out", "y"', "process 'python3': command: --out x -> y"),
         ("name=sim", 'name=context.launch_configurations["mode"]', "node 'arm/driver': name $(var sim) -> $(var mode)"),
         ('"joy", "a"', '"joy", "b"', "node 'arm/driver': parameters [joy_$(var joy a).yaml] -> [joy_$(var joy b)"),
     ],

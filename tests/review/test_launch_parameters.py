@@ -38,6 +38,31 @@ def test_topic_that_a_node_publishes_is_a_name_that_others_use(review_changes, n
     assert found == (changes if is_breaking else [])
 
 
+FILTER = """<launch>
+  <node pkg="robot_localization" type="{program}" name="filter">
+    <param name="{name}" value="/left/odometry"/>
+  </node>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "new", "is_breaking"),
+    [
+        ("ekf_localization_node", "odom0", "right/odometry", True),
+        ("ukf_localization_node", "imu1", "right/imu", True),
+        ("ekf_localization_node", "odom0", "left/odometry", False),
+        ("ekf_localization_node", "odom", "right/odometry", False),
+        ("navsat_transform_node", "odom0", "right/odometry", False),
+    ],
+)
+def test_topic_of_a_sensor_that_a_filter_no_longer_reads_is_breaking(review_changes, program, name, new, is_breaking):
+    text = FILTER.format(program=program, name=name)
+    changes, found = review_changes("arm.launch", text, "/left/odometry", new)
+    assert changes == [f"node 'robot_localization/{program}': parameter {name} /left/odometry -> {new}"]
+    assert found == (changes if is_breaking else [])
+
+
 def test_null_is_not_an_empty_text(review_changes):
     text = FILE.format(name="rate")
     assert review_changes("arm.launch", text, "gains:", "gains: 1")[0] == [

@@ -117,6 +117,31 @@ def test_several_frames_that_a_source_loses_are_looked_for(repository, compare):
     assert "names the frame 'lamp', which 'arm/frames.py' no longer has" in lines
 
 
+SENDER = """#include <ros/ros.h>
+void run(ros::NodeHandle& nh) {{
+  std::string frame;
+  nh.param<std::string>(ros::this_node::getName() + "/{key}", frame, "base");
+  geometry_msgs::TransformStamped transform;
+  transform.child_frame_id = {child};
+  broadcaster.sendTransform(transform);
+}}
+"""
+GIVEN = '<launch><node pkg="{}" type="sender" name="s"><param name="child_frame" value="/{}"/></node></launch>\n'
+
+
+@pytest.mark.parametrize(
+    ("package", "old", "is_found"), [("arm", "base", False), ("other", "base", True), ("arm", "boom/lamp", True)]
+)
+def test_a_frame_that_a_launch_file_newly_gives_to_the_package(repository, compare, package, old, is_found):
+    path = "arm/start.launch"
+    files = {"arm/package.xml": MANIFEST.format("arm"), path: GIVEN.format(package, old)}
+    repository.commit({**files, "arm/sender.cpp": SENDER.format(key="rate", child='"boom/lamp"')})
+    repository.write({"arm/sender.cpp": SENDER.format(key="child_frame", child="frame")})
+    repository.write({path: GIVEN.format(package, "boom/lamp") + "<!-- -->\n"})
+    lines = [str(change.sentence) for _, change in compare(repository).breaking_changes]
+    assert ("names the frame 'boom/lamp', which 'arm/sender.cpp' no longer has" in lines) is is_found
+
+
 PAIRS = '<robot name="{robot}"><disable_collisions link1="base_link" link2="{link}" reason="Never"/></robot>\n'
 OTHER_ROBOT = '<robot name="{}"><link name="camera"/></robot>\n'
 

@@ -103,3 +103,23 @@ def test_frame_around_a_long_text_is_left_out(frame):
     text = f"{frame * 80}\n{'#' if frame == '#' else '*'}  Use camera.launch.py!  *\n{frame * 80}\n"
     assert shorten_middle(text, 60) == "Use camera.launch.py!"
     assert shorten_middle("#### a ####", 60) == "#### a ####"
+
+
+def test_changed_value_of_an_option_is_told_with_the_option():
+    items = [
+        "-topic",
+        "/arm/robot_description",
+        "-entity",
+        "arm",
+        "-x",
+        "1.0",
+        "-y",
+        "2.0",
+        "-z",
+        "0.4",
+        "-timeout",
+        "9",
+    ]
+    old = f"[{', '.join(items)}]"
+    assert str(change_text("arguments", old, old.replace("0.4", "0.5"))) == "arguments: -z 0.4 -> 0.5"
+    assert str(change_text("arguments", old, old.replace("-z", "-R"))) == "arguments: -R added, -z removed"

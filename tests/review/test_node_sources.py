@@ -55,6 +55,7 @@ FILES = {
         ("arm/arm/driver.py", '        self.create_subscription(Bool, "enable", self.enable, 10)\n', "",
          ["subscriptions removed: 'enable' (Bool)"], True),
         ("arm/arm/driver.py", "Reach,", "Grasp,", ["action 'reach': type Reach -> Grasp"], True),
+        ("arm/arm/driver.py", "Reach,", "Grasp.Result,", ["action 'reach': type Reach -> Grasp.Result"], True),
         ("arm/arm/driver.py", '"rate", 10', '"rate", 20', ["parameter 'rate': default 10 -> 20"], False),
         ("arm/arm/driver.py", '("mass", 2.0)', "", ["parameters removed: 'arm.mass' (2.0)"], True),
         ("arm/arm/driver.py", '"home"', '"go_home"',

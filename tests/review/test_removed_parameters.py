@@ -46,3 +46,26 @@ def test_call_that_loses_its_name_is_not_removed_hardware(package, compare):
     result = compare(package)
     assert breaking(result) == []
     assert "macro 'arm': hardware name arm removed" in sentences(subject(result, PATH))
+
+
+LINKS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="caster" params="{parameters}">
+    <link name="{name}"/><link name="{name}_wheel"/><link name="{other}"/>
+  </xacro:macro>
+  <xacro:macro name="base" params="parent">{calls}</xacro:macro>
+</robot>
+"""
+
+
+@pytest.mark.parametrize("calls", [["swivel"], ["swivel", "tail"]])
+def test_value_that_all_calls_pass_takes_the_place_of_the_new_parameter(package, compare, calls):
+    old = LINKS.format(parameters="parent", name="swivel", other="hub", calls='<xacro:caster parent="p"/>')
+    texts = "".join(f'<xacro:caster parent="p" name="{name}"/>' for name in calls)
+    new = LINKS.format(parameters="name parent", name="${name}", other="${name}_hub", calls=texts)
+    package.commit({PATH: old})
+    package.write({PATH: new})
+    lines = sentences(subject(compare(package), PATH))
+    is_same = len(calls) == 1
+    assert ("macro 'caster': link ${name}_hub name: hub -> ${name}_hub" in lines) is is_same
+    assert ("macro 'caster': link swivel removed" not in lines) is is_same
+    assert ("macro 'caster': link swivel_wheel removed" not in lines) is is_same

@@ -166,3 +166,18 @@ def test_statements_without_an_effect_are_no_change(repository, compare, old, ne
 )
 def test_statements_that_depend_on_each_other_are_changes(repository, compare, old, new):
     assert list_lines(repository, compare, f"{old}\nself.d(a, b)", f"{new}\nself.d(a, b)")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_shown"),
+    [
+        ('self.a: float = self.get_parameter("a").value', 'self.a: float = 1 / self.get_parameter("a").value', True),
+        ('self.a = get_parameter("a").value', 'self.a = 0.5 * get_parameter("a").value', True),
+        ('self.a = get_param("a", 1)', 'self.a = 2 * get_param("b", 1)', False),
+        ('self.a = get_parameter("a").value', 'self.b = 2 * get_parameter("a").value', False),
+        ('self.a = get_parameter("a").value', 'self.a = float(get_parameter("a").value)', False),
+    ],
+)
+def test_other_computation_with_a_parameter_is_shown(repository, compare, old, new, is_shown):
+    lines = list_lines(repository, compare, old, new)
+    assert any("`self.a = " in line and " -> `self.a = " in line for line in lines) is is_shown

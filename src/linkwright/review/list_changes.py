@@ -16,6 +16,8 @@ _MANY_NUMBERS = 16
 """The maximum number of items of lists that a reader can compare."""
 _MAX_CHANGED_ITEMS = 8
 """The maximum number of changed items of a long list that are shown alone."""
+_OPTION = re.compile(r"--?[A-Za-z][\w-]*")
+"""An option of a command line, such as ``-z``."""
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _WORD = re.compile(r"(?:\$\((?:[^()]|\([^()]*\))*\)|\S)+")
 """A word of a line, in which a substitution such as ``$(var side)`` may have blanks."""
@@ -49,6 +51,9 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         if changes:
             return phrase("{parameter}: {changes}", parameter=name, changes=joined(changes))
         return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
+    option_change = _find_changed_option(old_items, new_items)
+    if option_change is not None:
+        return phrase("{parameter}: {changes}", parameter=name, changes=option_change)
     added_text = ", ".join(item for item in new_items if item in added)
     removed_text = ", ".join(item for item in old_items if item in removed)
     if not removed:
@@ -58,6 +63,14 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     return phrase(
         "{parameter}: {added} added, {removed} removed", parameter=name, added=added_text, removed=removed_text
     )
+
+
+def _find_changed_option(old: list[str], new: list[str]) -> str | None:
+    """Return the option of a command line whose value is the only difference, with both values, or None."""
+    changed = [number for number, item in enumerate(new) if len(old) == len(new) and item != old[number]]
+    number = changed[0] if len(changed) == 1 else 0
+    is_option = number > 0 and _OPTION.fullmatch(new[number - 1]) and not _OPTION.fullmatch(new[number])
+    return f"{new[number - 1]} {old[number]} -> {new[number]}" if is_option else None
 
 
 def _find_changed_items(old: list[str], new: list[str]) -> list[str]:

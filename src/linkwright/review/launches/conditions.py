@@ -88,6 +88,13 @@ def find_reversed_argument(old: str, new: str) -> str | None:
     return before["name"]
 
 
+def find_added_terms(old: str, new: str) -> str:
+    """Return the terms that a condition has in addition to all the old ones; empty if there are none."""
+    old_terms, new_terms = split_condition(old), split_condition(new)
+    added = [term for term in new_terms if term not in old_terms]
+    return " and ".join(added) if set(old_terms) <= set(new_terms) else ""
+
+
 def _evaluate_expression(node: ast.expr) -> object:
     """Return the value of an expression of constants, comparisons and logic.
 

@@ -22,7 +22,8 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.argument_uses import had_action
 from linkwright.review.launches.chosen_texts import is_choice
-from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
+from linkwright.review.launches.conditions import evaluate_condition, find_added_terms, find_reversed_argument
+from linkwright.review.launches.filter_topics import find_filter_topic_reason
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
     find_lost_target_reason,
@@ -333,7 +334,12 @@ def find_setting_reason(
         reversed_argument = find_reversed_argument(old or "", new or "")
         if reversed_argument is not None and all(other.name != entry.name for other in others):
             return phrase("the argument '{name}' has the opposite meaning now", name=reversed_argument)
-        return phrase("by default, it no longer starts") if old_holds and is_stopped else None
+        if old_holds and is_stopped:
+            return phrase("by default, it no longer starts")
+        added = find_added_terms(old or "", new or "") if all(other.name != entry.name for other in others) else ""
+        if added and evaluate_condition(new_outline.resolve(added)) is False:
+            return phrase("with the arguments that started it before, it no longer starts by default")
+        return None
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
@@ -405,8 +411,9 @@ def _find_parameter_reason(
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
     parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
+    topic_reason = find_filter_topic_reason(entry.name, parameter, old_name, new_name)
     hardware_reason = find_hardware_reason(parameter.rpartition(".")[2], old_name, new_name)
-    switch_reason = find_switch_reason(parameter, old_name, new_name) or hardware_reason
+    switch_reason = find_switch_reason(parameter, old_name, new_name) or hardware_reason or topic_reason
     if switch_reason is not None and switches_transform(parameter) and _starts_other_programs(old_outline, new_outline):
         return None  # an added node may publish the transform
     if switch_reason is not None or new_outline.is_ros1:

@@ -135,8 +135,8 @@ class ItemComparison:
     def _take_joined_blocks(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
         """Remove repeated ``<gazebo>`` elements of a link from both lists, and return them joined."""
         pairs = []
-        for key in dict.fromkeys(item.key for item in new if item.element.tag == GAZEBO):
-            new_items = [item for item in new if item.key == key]
+        for key in dict.fromkeys(self.new.rename_key(item) for item in new if item.element.tag == GAZEBO):
+            new_items = [item for item in new if self.new.rename_key(item) == key]
             old_items = [item for item in old if self.old.rename_key(item) == key]
             if not old_items or max(len(old_items), len(new_items)) == 1:
                 continue
@@ -155,9 +155,14 @@ class ItemComparison:
         """Return a function that checks that a key occurs equally often in both lists."""
         counts = (
             Counter(self.old.rename_key(item) for item in old),
-            Counter(item.key for item in new),
+            Counter(self.new.rename_key(item) for item in new),
         )
-        return lambda _, item: counts[0][item.key] == counts[1][item.key]
+
+        def is_equally_frequent(_: Item, item: Item) -> bool:
+            key = self.new.rename_key(item)
+            return counts[0][key] == counts[1][key]
+
+        return is_equally_frequent
 
     def _take_matched(
         self, old: list[Item], new: list[Item], matches: Callable[[Item, Item], bool]
@@ -166,7 +171,7 @@ class ItemComparison:
         pairs = []
         for new_item in list(new):
             for old_item in old:
-                if self.old.rename_key(old_item) == new_item.key and matches(old_item, new_item):
+                if self.old.rename_key(old_item) == self.new.rename_key(new_item) and matches(old_item, new_item):
                     pairs.append((old_item, new_item))
                     old.remove(old_item)
                     new.remove(new_item)

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Collection, Iterator
 
 from linkwright.review.parts.elements import ItemComparison
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import MacroOutline
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.xmltree import Element
 
 
 def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
     """Return the comparison of the elements of two files, or of two macros in them."""
     renamed = dict(_find_renamed_properties(pair))
     passed: dict[str, str] = {}
+    newly_passed: dict[str, str] = {}
     literals = [read_literals(outline.root) for outline in (pair.old, pair.new)]
     if old is not None and new is not None:
         renamed |= dict(_find_renamed_parameters(old, new))
         for values, macro in zip(literals, (old, new), strict=True):
             for name in macro.parameters:
                 values.pop(name.lstrip("*"), None)
-        passed = dict(_find_passed_values(pair, old, new, renamed))
+        passed = dict(_find_passed_values(old, new, pair.find_old_calls(old.name), renamed))
+        new_calls = [call for _, call in pair.find_new_calls(new.name)]
+        newly_passed = dict(_find_passed_values(new, old, new_calls, renamed.values()))
     old_names = NameSubstitution(literals[0], renamed, pair.renamed_macros, passed)
-    return ItemComparison(old_names, NameSubstitution(literals[1]))
+    return ItemComparison(old_names, NameSubstitution(literals[1], passed=newly_passed))
 
 
 def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
@@ -52,12 +56,11 @@ def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[t
 
 
 def _find_passed_values(
-    pair: PartPair, old: MacroOutline, new: MacroOutline, renamed: Container[str]
+    macro: MacroOutline, other: MacroOutline, calls: Collection[Element], renamed: Collection[str]
 ) -> Iterator[tuple[str, str]]:
-    """Yield the removed parameters of a macro for which all its old calls pass the same value, with the value."""
-    calls = pair.find_old_calls(old.name)
-    for parameter in old.parameters.values():
-        if parameter.name in new.parameters or parameter.name in renamed:
+    """Yield the parameters that only one version of a macro has and that all its calls pass as one value, with it."""
+    for parameter in macro.parameters.values():
+        if parameter.name in other.parameters or parameter.name in renamed:
             continue
         values = {call.attributes.get(parameter.name) for call in calls}
         value = values.pop() if len(values) == 1 else None

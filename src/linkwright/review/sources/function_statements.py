@@ -16,6 +16,9 @@ _NAMING = re.compile(
     r"Subscriber|Service\w*|Action\w+|\w*[Tt]imer)(?:<[^()]*>)?\s*\("
 )
 """A call that gives a name to a topic, service or parameter, or makes a timer. Other lines report it."""
+_READ = re.compile(r"\bget_param\w*\([^()]*\)")
+"""A call that reads a parameter."""
+_COMPUTATION = re.compile(r"[-+*/%]|\bnot\b|!")
 _TARGET = re.compile(r"[\w.\[\]'\":]+(?:(?:->|\(\)[.]|\(\)->)[\w.\[\]'\":]+)*\Z")
 """The variable, member or field at the end of the left side of an assignment."""
 _OPERATORS = "+-*/%&|^<>: "
@@ -125,6 +128,19 @@ def _classify(text: str) -> tuple[StatementKind, str, str]:
         return StatementKind.ASSIGNMENT, target[0], text[end + 1 :].strip()
     call = _CALL.fullmatch(text)
     return (StatementKind.OTHER, "", text) if call is None else (StatementKind.CALL, call["function"], text)
+
+
+def computes_otherwise(old: FunctionStatement, new: FunctionStatement) -> bool:
+    """Return whether two statements assign the same parameter to the same variable after different computations."""
+    ends = [_find_equals_sign(statement.text) for statement in (old, new)]
+    targets = [statement.text[:end] for statement, end in zip((old, new), ends, strict=True)]
+    values = [statement.text[end + 1 :] for statement, end in zip((old, new), ends, strict=True)]
+    reads = [_READ.findall(value) for value in values]
+    if -1 in ends or targets[0] != targets[1] or not reads[0] or reads[0] != reads[1]:
+        return False
+    others = [_READ.sub("", value) for value in values]
+    signs = [sorted(_COMPUTATION.findall(other)) for other in others]
+    return signs[0] != signs[1] and not any(_NAMING.search(other) for other in others)
 
 
 def _find_equals_sign(text: str) -> int:

@@ -66,6 +66,7 @@ _CALLBACK_KEYWORDS = {
 """The kinds of names with a callback as their third argument, and its name in ROS 1."""
 _ROUTE_METHODS = ("route", "get", "post", "put", "delete", "patch", "websocket")
 _NODE_CALLS = ("init_node", "create_node", "Node", "LifecycleNode")
+_PART_OF_INTERFACE = re.compile(r"\w+\.(?:Goal|Result|Feedback|Request|Response)\Z")
 _RATE_CALLS = ("Rate", "create_rate", "Timer", "create_timer")
 _TRANSFORM_CALLS = {
     **dict.fromkeys(("lookup_transform", "lookupTransform", "can_transform", "canTransform"), (0, 1)),
@@ -551,7 +552,7 @@ class _Reader:
             is_literal = isinstance(value, (ast.Constant, ast.List, ast.UnaryOp))
             type_name = ast.unparse(value) if is_literal and value is not None else ""
         else:
-            type_name = "" if type_node is None else ast.unparse(type_node).rpartition(".")[2]
+            type_name = "" if type_node is None else _format_type(type_node)
             full_type = "" if type_node is None else self._types.find(type_node)
         if node is not None and text is None:
             self._add_expression(kind, node, type_name, full_type)
@@ -568,3 +569,10 @@ class _Reader:
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:
             self._names.add_default(kind, text, *parameter)
+
+
+def _format_type(node: ast.expr) -> str:
+    """Return the name of a type without its package, such as ``String`` or ``Move.Feedback``."""
+    text = ast.unparse(node)
+    part = _PART_OF_INTERFACE.search(text)
+    return part[0] if part is not None else text.rpartition(".")[2]

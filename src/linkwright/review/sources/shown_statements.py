@@ -16,6 +16,7 @@ from linkwright.review.sources.code_changes import CodeChange, ReportedLines, fo
 from linkwright.review.sources.function_statements import (
     FunctionStatement,
     StatementKind,
+    computes_otherwise,
     list_words,
     parse_part,
     read_text,
@@ -221,7 +222,10 @@ def _compare(
         ]
         after = [parse_part(part, is_head=bool(name) and part is new[0]) for part in sorted_parts[1][new_start:new_end]]
         for difference in _with_bodies([*_pair(before, after)]):
-            if difference.statement.kind is StatementKind.REPORTED or sides.is_left_out(difference, name, lines):
+            is_reported = difference.statement.kind is StatementKind.REPORTED
+            if is_reported and difference.old is not None and difference.new is not None:
+                is_reported = not computes_otherwise(difference.old, difference.new)
+            if is_reported or sides.is_left_out(difference, name, lines):
                 continue
             is_removed = difference.new is None and difference.body is None
             left = texts[1].count(read_text(difference.statement.part)) if is_removed else 0

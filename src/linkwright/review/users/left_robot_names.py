@@ -105,9 +105,26 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
     for item in lost:
         found = {item.path}
         for path, change in files.find_users(item):
+            if _gives_frame(versions, path, change, item):
+                continue
             if path not in found and files.are_related(path, item.path):
                 found.add(path)
                 yield path, change
+
+
+def _gives_frame(versions: Versions, path: str, change: Change, lost: RobotName) -> bool:
+    """Return whether a launch file newly passes a frame to the package whose source had it as a constant.
+
+    The frame is then a parameter of the program, and the launch file still defines it.
+    """
+    folder = versions.new.package_of(lost.path)
+    if folder is None or not lost.path.endswith(_SOURCE_SUFFIXES) or not path.endswith(LAUNCH_SUFFIXES):
+        return False
+    outline, package = try_read_outline(versions.new, path), package_name(versions.new.file(folder))
+    if outline is None or change.location is None or lost.name in versions.old.text(path):
+        return False
+    line = change.location.line
+    return any(node.span.line == line and node.name.startswith(f"{package}/") for node in list_nodes(outline))
 
 
 def list_lost_names(subjects: Sequence[Subject]) -> Iterator[RobotName]:
