@@ -11,7 +11,6 @@ from linkwright.diagnostics import Diagnostic, Span, phrase
 from linkwright.review import open_versions
 from linkwright.review.folders import finding_without_folders
 from linkwright.review.unfixed_findings import drop_unfixed_findings
-from linkwright.review.unrelated_findings import drop_unrelated_findings
 from tests.repositories import ARM, MACRO, PACKAGE_XML
 from tests.review.conftest import breaking
 
@@ -225,30 +224,6 @@ def test_folders_of_the_computer_are_left_out(path, expected):
     shares = {"arm": Path("/home/ann/.cache/shares/1f/arm")}
     finding = finding_without_folders(finding, Path("/tmp/version/files"), shares)
     assert str(finding.message) == f"there is no '{expected}'"
-
-
-PROPERTY = '<robot name="other"><xacro:property name="reach" value="1"/><link name="${reach}"/></robot>'
-
-
-@pytest.mark.parametrize(
-    ("text", "path", "codes"),
-    [
-        (PROPERTY, PATH, []),
-        (PROPERTY.replace("xacro:property", "property"), PATH, []),
-        (PROPERTY.replace('"reach"', '"length"'), PATH, ["LW701"]),
-        (PROPERTY, SEGMENT, ["LW701"]),
-    ],
-)
-def test_removed_robot_used_its_own_property_of_the_same_name(package, text, path, codes):
-    package.commit({"arm_description/urdf/other.urdf.xacro": text})
-    package.commit({"arm_description/urdf/other.urdf.xacro": None, SEGMENT: f"{MACRO}<!-- -->"})
-    versions = open_versions(package.root, "HEAD~1..HEAD")
-    try:
-        message = phrase("nothing uses the property '{name}'", name="reach")
-        added = [Diagnostic("LW701", message, Span(path, 1, 1, 1, 1))]
-        assert finding_codes(drop_unrelated_findings(versions, added)) == codes
-    finally:
-        versions.close()
 
 
 def find_fixed(repository, code: str, path: str, message: str, added: Sequence[Diagnostic] = ()) -> list[str]:

@@ -97,7 +97,6 @@ from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.unchanged_contents import keeps_contents
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
-from linkwright.review.unrelated_findings import drop_unrelated_findings
 from linkwright.review.users.followed_joints import relieve_followed_joints
 from linkwright.review.users.ignored_packages import relieve_ignored_packages
 from linkwright.review.users.left_collision_pairs import find_left_collision_pairs
@@ -232,7 +231,6 @@ class _Reviewer:
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         fixed = drop_unfixed_findings(self._versions, fixed, added, self._new_paths)
-        added = drop_unrelated_findings(self._versions, added)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         readable, added = mark_failures(self._versions, readable, added, fixed, old_findings.diagnostics)
         return Review(
