@@ -72,6 +72,7 @@ from linkwright.review.notes import (
     group_unexpanded,
     is_unreadable_as_before,
     make_checkout_notes,
+    make_generated_notes,
     make_missing_notes,
     make_submodule_note,
     make_unreadable_notes,
@@ -499,7 +500,8 @@ class _Reviewer:
                     yield phrase("submodule '{path}' replaced by files of the repository", path=file.path)
                 elif file.new_path is not None:
                     yield make_submodule_note(file)
-        yield from make_checkout_notes([self._versions.old, self._versions.new])
+        yield from make_generated_notes(self._versions)
+        yield from make_checkout_notes(self._versions)
 
 
 def _is_only_moved(subject: Subject) -> bool:
