@@ -255,4 +255,4 @@ def test_removed_interface_is_shown_with_its_fields(repository, compare):
     repository.commit({"a/srv/SetLoad.srv": "float64 load\n---\nbool success\n"})
     repository.write({"a/srv/SetLoad.srv": None})
     (change,) = subject(compare(repository), "a/srv/SetLoad.srv").changes
-    assert str(change.sentence) == "interface removed: float64 request load, bool response success"
+    assert str(change.sentence) == "interface removed: request: float64 load; response: bool success"
