@@ -43,6 +43,7 @@ from linkwright.review.files.templates import is_template
 from linkwright.review.files.worlds import is_other_world
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
+from linkwright.review.hidden_findings import drop_hidden_findings
 from linkwright.review.kinds import (
     BEHAVIOR_TREE,
     GUI,
@@ -230,6 +231,7 @@ class _Reviewer:
             if not keeps_contents(self._versions, file)
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        added = drop_hidden_findings(self._versions, added)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         fixed = drop_unfixed_findings(self._versions, fixed, added, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
