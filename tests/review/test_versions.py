@@ -410,11 +410,11 @@ def test_generated_folders_are_no_packages_interfaces_or_descriptions(package, c
     package.git("rm", "-r", "--quiet", "arm_description/launch/install", "arm_description/launch/log")
     package.commit({"devel/_setup_util.py": "a = 2\n", "devel/arm.yaml": "a: 1\n"})
     result = compare(package, "HEAD~1..HEAD")
+    folders = "'arm_description/launch/install/', 'arm_description/launch/log/'"
     assert (result.subjects, result.other_files) == ([], [])
     assert list(map(str, result.notes)) == [
         "one generated file of colcon or catkin added, in 'devel/'",
-        "9 generated files of colcon or catkin removed, in 'arm_description/launch/install/',"
-        " 'arm_description/launch/log/'",
+        f"9 generated files of colcon or catkin removed, in {folders}",
         "one generated file of colcon or catkin changed, in 'devel/'",
     ]
 
