@@ -315,8 +315,8 @@ def open_versions(folder: Path, range_text: str) -> Versions:
         paired_files = _pair_empty_files(old, new, _drop_files_of_submodules(changed_files))
         files = [file for file in paired_files if not _is_blank(old, new, file)]
         files = [_without_empty_version(old, file) for file in files]
-        entered = (_enter_skipped_folders(version, files) for version in (old, new))
-        return Versions(*entered, files, generated_files)
+        old, new = _enter_skipped_folders(old, files), _enter_skipped_folders(new, files)
+        return Versions(old, new, files, generated_files)
 
 
 def _list_paths(files: list[ChangedFile]) -> set[str]:
