@@ -361,3 +361,17 @@ def test_declared_package_that_this_computer_lacks_is_no_finding(package, compar
     include = '<xacro:include filename="$(find sensor_of_others)/urdf/sensor.xacro"/>'
     package.write({PATH: ARM.replace("<link name=", f"{include}<link name=", 1)})
     assert finding_codes(compare(package).new_findings) == codes
+
+
+@pytest.mark.parametrize("has_own_value", [True, False])
+def test_property_that_only_a_removed_robot_with_its_own_hid_is_no_new_finding(package, compare, has_own_value):
+    """The other robot never included this one."""
+    definition = '<xacro:property name="reach" value="0.8"/>'
+    use = '<link name="${reach}"/>'
+    other = ARM.replace('<link name="base_link"/>', f'<link name="base_link"/>{definition * has_own_value}{use}')
+    path = "arm_description/urdf/crane.urdf.xacro"
+    package.commit({PATH: ARM.replace('<link name="base_link"/>', f'<link name="base_link"/>{definition}')})
+    package.commit({path: other})
+    package.commit({path: None, SEGMENT: MACRO.replace("</robot>", "<!-- arms --></robot>")})
+    codes = finding_codes(compare(package, "HEAD~1..HEAD").new_findings)
+    assert codes == ([] if has_own_value else ["LW701"])

@@ -100,3 +100,18 @@ def test_element_of_sdf_is_no_parameter_of_ros(repository, compare):
     repository.write({"arm/src/p.cpp": text.replace("}\n", '  getSdfParam(_sdf, "delay", delay_, 0.5);\n}\n')})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert lines == ["parameters of the plugin added: 'delay'"]
+
+
+def test_removed_message_of_a_list_that_a_command_reads_is_breaking(review_removal):
+    build = 'project(arm)\nset(msg_files\n  "msg/State.msg"\n  "msg/Load.msg"\n)\n{}'
+    command = "rosidl_generate_interfaces(${PROJECT_NAME} ${msg_files})\n"
+    files = {"arm/msg/State.msg": "int8 x\n", "arm/msg/Load.msg": "int8 x\n"}
+    before = {"arm/CMakeLists.txt": build.format(command), **files}
+    lost = "names 'msg/State.msg', which no longer exists"
+    assert review_removal("arm/msg/State.msg", before=before) == [lost]
+
+
+def test_removed_message_of_a_list_that_no_command_reads_is_not_lost(review_removal):
+    build = "project(arm)\nset(msg_files msg/State.msg)\nrosidl_generate_interfaces(${PROJECT_NAME} ${files})\n"
+    before = {"arm/CMakeLists.txt": build, "arm/msg/State.msg": "int8 x\n"}
+    assert not review_removal("arm/msg/State.msg", before=before)

@@ -53,3 +53,19 @@ def test_added_interface_that_is_not_built_is_named(repository, compare, listed,
     repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", "")})
     repository.write({CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\n"})
     assert sentences(subject(compare(repository), PATH)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("listed", "expected", "is_breaking"),
+    [
+        ("", "interface removed: request: float64 x; CMakeLists.txt did not build it", False),
+        ("srv/Move.srv", "interface removed: request: float64 x", True),
+    ],
+)
+def test_removed_interface_that_was_never_built_breaks_nothing(repository, compare, listed, expected, is_breaking):
+    repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\n"})
+    repository.git("rm", "-q", PATH)
+    repository.write({CMAKE_PATH: CMAKE.format("", "")})
+    result = compare(repository)
+    assert sentences(subject(result, PATH)) == [expected]
+    assert breaking(result) == ([expected] if is_breaking else [])

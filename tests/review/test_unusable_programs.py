@@ -8,6 +8,7 @@ from tests.repositories import PACKAGE_XML
 from tests.review.conftest import sentences
 
 SCRIPT = "#!/usr/bin/env python3\nprint('arm')\n"
+NODE = SCRIPT + "if __name__ == '__main__':\n    rclpy.init()\n    rclpy.spin(Arm())\n"
 BUILD = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\ninstall(PROGRAMS {} DESTINATION lib/${{PROJECT_NAME}})\n"
 MANIFEST = PACKAGE_XML.replace("arm_description", "arm")
 CATKIN = MANIFEST.replace("<exec_depend>", "<buildtool_depend>catkin</buildtool_depend><exec_depend>")
@@ -42,3 +43,21 @@ def test_script_of_ros1_that_is_not_executable(repository, compare, is_executabl
     repository.root.joinpath("arm/scripts/a.py").chmod(0o755 if is_executable else 0o644)
     repository.commit({})
     assert (NOT_EXECUTABLE in list_lines(repository, compare, {"arm/scripts/bend.py": SCRIPT})) is is_told
+
+
+@pytest.mark.parametrize(
+    ("text", "is_executable", "files", "is_told"),
+    [
+        (NODE, True, {}, True),
+        (NODE, False, {}, False),
+        (SCRIPT, True, {}, False),
+        (NODE, True, {"arm/scripts/__init__.py": ""}, False),
+        (NODE, True, {"arm/CMakeLists.txt": BUILD.format("nodes/c.py scripts/bend.py")}, False),
+    ],
+)
+def test_script_that_starts_a_node_and_is_not_installed(repository, compare, text, is_executable, files, is_told):
+    build = BUILD.format("nodes/c.py")
+    repository.commit({"arm/package.xml": MANIFEST, "arm/nodes/c.py": SCRIPT, "arm/CMakeLists.txt": build})
+    repository.write({"arm/scripts/bend.py": text, **files})
+    repository.root.joinpath("arm/scripts/bend.py").chmod(0o755 if is_executable else 0o644)
+    assert (NOT_INSTALLED in list_lines(repository, compare, {})) is is_told

@@ -380,12 +380,52 @@ def test_build_files_of_colcon_are_not_checked_out_unless_they_change(repository
 
 
 def test_links_out_of_build_folders_are_still_noted(package, compare, tmp_path):
-    package.write({"log/COLCON_IGNORE": ""})
-    (package.root / "log/latest").symlink_to(tmp_path)
+    package.write({"build/COLCON_IGNORE": ""})
+    (package.root / "build/latest").symlink_to(tmp_path)
     package.commit({})
-    package.commit({"log/a.yaml": "a: 1\n"})
+    package.commit({"build/a.yaml": "a: 1\n"})
     notes = [str(note) for note in compare(package, "HEAD~1..HEAD").notes]
-    assert notes == ["symbolic link 'log/latest' points outside the repository and is ignored"]
+    assert notes == ["symbolic link 'build/latest' points outside the repository and is ignored"]
+
+
+def test_generated_folders_are_no_packages_interfaces_or_descriptions(package, compare, tmp_path):
+    """The sources of what is removed with them are still there."""
+    share = "arm_description/launch/install/arm/share/arm"
+    package.write(
+        {
+            "arm_description/launch/install/COLCON_IGNORE": "",
+            "arm_description/launch/install/.colcon_install_layout": "isolated\n",
+            "arm_description/launch/install/_local_setup_util_sh.py": "parser.add_argument('--merged-install')\n",
+            f"{share}/package.xml": "<package format='3'><name>arm</name></package>",
+            f"{share}/msg/State.msg": "float64 position\n",
+            f"{share}/robot.urdf": "<robot name='arm'><link name='base_link'/></robot>",
+            "arm_description/launch/log/COLCON_IGNORE": "",
+            "arm_description/launch/log/build_1/events.log": "x\n",
+            "devel/.catkin": "",
+            "devel/_setup_util.py": "a = 1\n",
+        }
+    )
+    (package.root / share / "mesh.stl").symlink_to(tmp_path)
+    package.commit({})
+    package.git("rm", "-r", "--quiet", "arm_description/launch/install", "arm_description/launch/log")
+    package.commit({"devel/_setup_util.py": "a = 2\n", "devel/arm.yaml": "a: 1\n"})
+    result = compare(package, "HEAD~1..HEAD")
+    folders = "'arm_description/launch/install/', 'arm_description/launch/log/'"
+    assert (result.subjects, result.other_files) == ([], [])
+    assert list(map(str, result.notes)) == [
+        "one generated file of colcon or catkin added, in 'devel/'",
+        f"9 generated files of colcon or catkin removed, in {folders}",
+        "one generated file of colcon or catkin changed, in 'devel/'",
+    ]
+
+
+def test_file_that_leaves_a_generated_folder_is_added(package, compare):
+    package.commit({"build/COLCON_IGNORE": "", "build/.built_by": "colcon\n", "build/a.yaml": "rate: 50\n"})
+    package.git("mv", "build/a.yaml", "arm_description/a.yaml")
+    package.commit({})
+    result = compare(package, "HEAD~1..HEAD")
+    assert sentences(subject(result, "arm_description/a.yaml")) == ["parameter file added: rate 50"]
+    assert list(map(str, result.notes)) == ["one generated file of colcon or catkin removed, in 'build/'"]
 
 
 def test_folder_that_becomes_a_submodule_loses_nothing(package, compare, tmp_path):

@@ -208,6 +208,10 @@ class GitRepository:
         options = ("--cached", "--others", "--exclude-standard", "-z")
         return self.run("ls-files", *options, "--", *patterns).stdout.split("\0")[:-1]
 
+    def list_files(self, commit: str) -> list[str]:
+        """Return the paths of a commit's files, relative to the root."""
+        return self.run("ls-tree", "-r", "-z", "--name-only", "--full-tree", commit).stdout.split("\0")[:-1]
+
     def list_symbolic_links(self, commit: str) -> list[str]:
         """Return the paths of a commit's symbolic links, relative to the root."""
         entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")

@@ -14,6 +14,7 @@ from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.generated_parameters import generates_code
+from linkwright.review.files.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.folders import without_folder
 from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
@@ -46,7 +47,7 @@ def compare_file(
         new_path: the path in the new version; None for a removed file.
         drawings: the kinds of drawings of robots that look different.
     """
-    if old_path is not None and (is_without_manifest(versions.old, old_path) or generates_code(versions.old, old_path)):
+    if old_path is not None and _is_without_users(versions.old, rule, old_path):
         rule = replace(rule, removal_reason=None)
     is_test = rule.kind in _TESTED_KINDS and old_path is not None and is_test_file(versions.old, old_path)
     if old_path is None or new_path is None:
@@ -82,6 +83,13 @@ def compare_file(
         is_lost=pair.is_lost,
         added_topics=pair.added_topics,
     )
+
+
+def _is_without_users(version: Version, rule: KindRule, path: str) -> bool:
+    """Return whether no program can use a file by its installed path or as a type."""
+    if rule.kind is SubjectKind.INTERFACE and is_unbuilt(version, path):
+        return True
+    return is_without_manifest(version, path) or generates_code(version, path)
 
 
 def _show_contents(pair: FilePair, rule: KindRule) -> None:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Subject
-from linkwright.review.versions import Version
+from linkwright.review.versions import Versions
 
 _MAX_NAMES = 5
 """The maximum number of missing packages and files that a note names."""
@@ -106,13 +106,45 @@ def group_unexpanded(subjects: Sequence[Subject]) -> tuple[list[Subject], list[P
     return [replace(subject, problems=[]) if subject.path in grouped else subject for subject in subjects], notes
 
 
-def make_checkout_notes(versions: Sequence[Version]) -> Iterator[Phrase]:
+def make_generated_notes(versions: Versions) -> Iterator[Phrase]:
+    """Yield notes about changed files in folders that colcon or catkin wrote, which are not compared."""
+    files = [(f"{folder}/", file) for folder, files in sorted(versions.generated_files.items()) for file in files]
+    added = [folder for folder, file in files if file.old_path is None]
+    removed = [folder for folder, file in files if file.new_path is None]
+    changed = [folder for folder, file in files if file.old_path is not None and file.new_path is not None]
+    if added:
+        yield counted(
+            "one generated file of colcon or catkin added, in {names}",
+            "{count} generated files of colcon or catkin added, in {names}",
+            len(added),
+            names=quoted_names(list(dict.fromkeys(added))),
+        )
+    if removed:
+        yield counted(
+            "one generated file of colcon or catkin removed, in {names}",
+            "{count} generated files of colcon or catkin removed, in {names}",
+            len(removed),
+            names=quoted_names(list(dict.fromkeys(removed))),
+        )
+    if changed:
+        yield counted(
+            "one generated file of colcon or catkin changed, in {names}",
+            "{count} generated files of colcon or catkin changed, in {names}",
+            len(changed),
+            names=quoted_names(list(dict.fromkeys(changed))),
+        )
+
+
+def make_checkout_notes(versions: Versions) -> Iterator[Phrase]:
     """Yield a note about symbolic links that are ignored, and notes about files that git cannot check out.
 
     What both versions have in common is one note.
     """
-    commits = [(version.name, version.commit) for version in versions if version.commit is not None]
-    links = max((commit.removed_links for _, commit in commits), key=len, default=())
+    sides = (versions.old, versions.new)
+    commits = [(version.name, version.commit) for version in sides if version.commit is not None]
+    generated = tuple(f"{folder}/" for folder in versions.generated_files)
+    removed_links = [[link for link in commit.removed_links if not link.startswith(generated)] for _, commit in commits]
+    links = max(removed_links, key=len, default=[])
     if links:
         yield counted(
             "symbolic link '{path}' points outside the repository and is ignored",

@@ -43,6 +43,7 @@ from linkwright.review.files.templates import is_template
 from linkwright.review.files.worlds import is_other_world
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
+from linkwright.review.hidden_findings import drop_hidden_findings
 from linkwright.review.kinds import (
     BEHAVIOR_TREE,
     GUI,
@@ -72,6 +73,7 @@ from linkwright.review.notes import (
     group_unexpanded,
     is_unreadable_as_before,
     make_checkout_notes,
+    make_generated_notes,
     make_missing_notes,
     make_submodule_note,
     make_unreadable_notes,
@@ -229,6 +231,7 @@ class _Reviewer:
             if not keeps_contents(self._versions, file)
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        added = drop_hidden_findings(self._versions, added)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         fixed = drop_unfixed_findings(self._versions, fixed, added, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
@@ -499,7 +502,8 @@ class _Reviewer:
                     yield phrase("submodule '{path}' replaced by files of the repository", path=file.path)
                 elif file.new_path is not None:
                     yield make_submodule_note(file)
-        yield from make_checkout_notes([self._versions.old, self._versions.new])
+        yield from make_generated_notes(self._versions)
+        yield from make_checkout_notes(self._versions)
 
 
 def _is_only_moved(subject: Subject) -> bool:

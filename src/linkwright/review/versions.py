@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
@@ -28,7 +28,7 @@ from linkwright.packages.manifest import (
     package_name,
 )
 from linkwright.packages.share_layout import find_share_of_sources
-from linkwright.review.build_folders import find_build_files
+from linkwright.review.build_folders import find_build_files, find_generated_folders, split_generated
 from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts, is_of_ros1
 from linkwright.xmltree import Overlay
 
@@ -238,11 +238,14 @@ class Versions:
         old: the old version.
         new: the new version.
         changed_files: the files that differ.
+        generated_files: the files that differ in folders that colcon or catkin wrote, by the folder. They are not
+            compared.
     """
 
     old: Version
     new: Version
     changed_files: list[ChangedFile]
+    generated_files: Mapping[str, list[ChangedFile]] = field(default_factory=dict)
 
     @property
     def has_added_submodule(self) -> bool:
@@ -294,7 +297,9 @@ def open_versions(folder: Path, range_text: str) -> Versions:
     if "..." in range_text or not range_text:
         old_commit = _find_common_commit(repository, old_commit, old_name, new_name or "HEAD")
     changed_files = repository.changed_files(old_commit, new_commit)
-    changed = {path for file in changed_files for path in (file.old_path, file.new_path) if path is not None}
+    folders = find_generated_folders({*repository.list_files(old_commit), *_list_paths(changed_files)})
+    changed_files, generated_files = split_generated(changed_files, folders)
+    changed = _list_paths(changed_files)
     find_unused = partial(find_build_files, changed=changed)
     with ExitStack() as stack:
         old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False, find_unused=find_unused)
@@ -310,7 +315,13 @@ def open_versions(folder: Path, range_text: str) -> Versions:
         paired_files = _pair_empty_files(old, new, _drop_files_of_submodules(changed_files))
         files = [file for file in paired_files if not _is_blank(old, new, file)]
         files = [_without_empty_version(old, file) for file in files]
-        return Versions(_enter_skipped_folders(old, files), _enter_skipped_folders(new, files), files)
+        old, new = _enter_skipped_folders(old, files), _enter_skipped_folders(new, files)
+        return Versions(old, new, files, generated_files)
+
+
+def _list_paths(files: list[ChangedFile]) -> set[str]:
+    """Return the old and the new paths of files."""
+    return {path for file in files for path in (file.old_path, file.new_path) if path is not None}
 
 
 def _enter_skipped_folders(version: Version, files: list[ChangedFile]) -> Version:
@@ -318,10 +329,9 @@ def _enter_skipped_folders(version: Version, files: list[ChangedFile]) -> Versio
 
     Some repositories have such a file until an installation script deletes it.
     """
-    paths = {path for file in files for path in (file.old_path, file.new_path) if path is not None}
     folders = {
         version.file(parent.as_posix())
-        for path in paths
+        for path in _list_paths(files)
         if path.endswith(TARGET_SUFFIXES)
         for parent in PurePosixPath(path).parents
     }

@@ -244,7 +244,7 @@ class FileNotInstalled(PackageRule):
 
 
 class InstalledFileMissing(PackageRule):
-    """``setup.py`` or ``CMakeLists.txt`` installs a file or folder that does not exist.
+    """``setup.py`` or ``CMakeLists.txt`` installs a file, folder or Python package that does not exist.
 
     ## Why
 

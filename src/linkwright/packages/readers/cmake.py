@@ -148,6 +148,7 @@ class CMakeFile:
         interfaces: the interface files for which code is generated, relative to the package.
         modules: the installed Python packages and modules, as folders and files relative to the package.
         python_packages: the folders of the installed Python packages by name, relative to the package.
+        required_modules: the ``__init__.py`` that these folders need, relative to the package.
         hooks: the installed files that set environment variables, relative to the prefix.
         compiled: the compiled targets.
         foreign: the commands of other packages, which may install additional files.
@@ -163,6 +164,7 @@ class CMakeFile:
     interfaces: list[str] = field(default_factory=list)
     modules: list[str] = field(default_factory=list)
     python_packages: dict[str, str] = field(default_factory=dict)
+    required_modules: list[Argument] = field(default_factory=list)
     hooks: list[str] = field(default_factory=list)
     compiled: list[str] = field(default_factory=list)
     foreign: list[str] = field(default_factory=list)
@@ -189,7 +191,8 @@ class CMakeFile:
     @property
     def required_paths(self) -> list[Argument]:
         """The files and folders that must exist for the build to succeed."""
-        return [item for rule in self.copies for item in rule.items if not rule.may_be_missing(item.text)]
+        copied = [item for rule in self.copies for item in rule.items if not rule.may_be_missing(item.text)]
+        return [*copied, *self.required_modules]
 
     @property
     def programs(self) -> dict[str, str]:
@@ -349,6 +352,10 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         folder = to_package_path(_find_argument_after(words, "PACKAGE_DIR") or words[0], command.folder)
         file.modules.append(folder)
         file.python_packages[words[0]] = folder
+        if not (command.is_conditional or folder.startswith(BUILD) or is_open(folder)):
+            argument = command.arguments[0]
+            path = str(PurePosixPath(folder, "__init__.py"))
+            file.required_modules.append(Argument(path, argument.start, argument.end, argument.source))
     elif name == "ament_python_install_module" and words:
         file.modules.append(to_package_path(words[0], command.folder))
     elif name == "ament_environment_hooks":

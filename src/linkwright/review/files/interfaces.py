@@ -143,9 +143,10 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     contents = joined(texts, ", " if is_idl else "; ") if texts else None
     if not is_unbuilt(version, path):
         return contents
-    if contents is None:
-        return phrase("CMakeLists.txt does not build it")
-    return phrase("{contents}; CMakeLists.txt does not build it", contents=contents)
+    unbuilt = (
+        phrase("CMakeLists.txt did not build it") if version.is_old else phrase("CMakeLists.txt does not build it")
+    )
+    return unbuilt if contents is None else joined([contents, unbuilt], "; ")
 
 
 def _format_type(field: Field, *, is_ros1: bool) -> str:

@@ -51,7 +51,14 @@ from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.value_vectors import shorten_covariance
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
-from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
+from linkwright.review.files.yaml_values import (
+    YamlType,
+    YamlValue,
+    collect_values,
+    compose_yaml,
+    list_merged_items,
+    read_yaml_text,
+)
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.versions import Version
 
@@ -136,7 +143,7 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
             nodes.setdefault(node, {})[name] = value
     if nodes:
         return phrase("parameters of {names}", names=_format_values(nodes))
-    names = [str(key.value) for key, _ in root.value]
+    names = [str(key.value) for key, _ in list_merged_items(root)]
     keys = {key: {name: value for name, value in values.items() if _is_below(name, key)} for key in names}
     return _format_values(keys) if keys else None
 
@@ -159,7 +166,12 @@ def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     ranks = {part: _rank_values(items) for part, items in listed.items()}
     telling = {part: sum(rank <= 0 for rank in part_ranks) for part, part_ranks in ranks.items()}
     texts: list[Phrase] = []
+    first_parts: dict[tuple[str, ...], str] = {}
     for part, values in parts.items():
+        first = first_parts.setdefault(tuple(listed[part]), part)
+        if first != part and len(listed[part]) >= _MIN_VALUES_OF_PART:
+            texts.append(phrase("{entry} (as {first})", entry=part, first=first))
+            continue
         items = [shorten_middle(item, _MAX_VALUE_CHARACTERS) for item in listed[part]]
         if len(items) > count_shown(len(items), limit):
             items = [item for _, item in sorted(zip(ranks[part], items, strict=True), key=lambda pair: pair[0])]

@@ -17,6 +17,7 @@ from linkwright.review.list_changes import EMPTY
 _MAX_BYTES = 4 << 20
 _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
+_MERGE_TAG = "tag:yaml.org,2002:merge"
 NULL = "null"
 _NAME_KEYS = ("name", "id")
 """The keys that identify the items of a list."""
@@ -144,7 +145,7 @@ def parse_yaml_value(text: str) -> YamlValue | None:
 
 def _walk_values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
     if isinstance(node, yaml.MappingNode):
-        for key, value in node.value:
+        for key, value in list_merged_items(node):
             name = key.value if isinstance(key, yaml.ScalarNode) else "?"
             yield from _walk_values(value, f"{path}.{name}" if path else str(name), labels)
     elif is_structured_list(node):
@@ -155,6 +156,32 @@ def _walk_values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Itera
         mark = node.start_mark
         is_list = isinstance(node, yaml.SequenceNode)
         yield path, YamlValue(_format_scalar(node), mark.line + 1, mark.column + 1, _find_type(node), is_list)
+
+
+def list_merged_items(node: yaml.MappingNode) -> list[tuple[yaml.Node, yaml.Node]]:
+    """Return the keys and values of a mapping, with those that merge keys (``<<``) bring; own keys go first."""
+    items: list[tuple[yaml.Node, yaml.Node]] = []
+    _collect_items(node, items, set())
+    return items
+
+
+def _collect_items(node: yaml.MappingNode, items: list[tuple[yaml.Node, yaml.Node]], seen: set[int]) -> None:
+    """Add the items of a mapping whose keys are not known yet.
+
+    Args:
+        node: the mapping.
+        items: the known keys with their values.
+        seen: the identities of the mappings that were added; one may be merged many times, also into itself.
+    """
+    seen.add(id(node))
+    known = {key.value for key, _ in items if isinstance(key, yaml.ScalarNode)}
+    own = [(key, value) for key, value in node.value if key.tag != _MERGE_TAG]
+    items += [item for item in own if not isinstance(item[0], yaml.ScalarNode) or item[0].value not in known]
+    for key, value in node.value:
+        sources = value.value if isinstance(value, yaml.SequenceNode) else [value]
+        for source in sources if key.tag == _MERGE_TAG else ():
+            if isinstance(source, yaml.MappingNode) and id(source) not in seen:
+                _collect_items(source, items, seen)
 
 
 def is_structured_list(node: yaml.Node) -> bool:

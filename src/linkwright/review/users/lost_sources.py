@@ -24,6 +24,11 @@ _BUILD = re.compile(
     re.IGNORECASE,
 )
 """The commands of CMake that build or export the files that they name."""
+_LIST = re.compile(
+    r"\b(?:set\s*\(|list\s*\(\s*(?:APPEND|PREPEND)\b)\s*(?P<variable>\w+)\s(?P<words>[^()]*)\)", re.IGNORECASE
+)
+"""The commands of CMake that fill a list."""
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
 _INTERFACE_FOLDERS = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
 """The folders, beside the build file, of the files that commands of catkin name without a folder."""
 _CURRENT_FOLDER = re.compile(r"^\"?(?:\$\{(?:CMAKE_CURRENT_SOURCE_DIR|PROJECT_SOURCE_DIR|CMAKE_SOURCE_DIR)\}/|\./)?")
@@ -56,14 +61,19 @@ def _find_lost_words(path: str, text: str, lost: Sequence[str]) -> Iterator[Chan
     }
     for command in _BUILD.finditer(text) if names else ():
         default_folder = _INTERFACE_FOLDERS.get(command["name"].lower(), "")
-        for word in re.finditer(r"\S+", command["words"]):
-            name = _CURRENT_FOLDER.sub("", word[0]).rstrip('"')
-            file = name if "DIRECTORY" in command["words"] else (PurePosixPath(default_folder) / name).as_posix()
-            if file in names:
-                names.discard(file)
-                line = text[: command.start("words") + word.start()].count("\n") + 1
-                message = phrase("names '{file}', which no longer exists", file=name)
-                yield Change(message, Effect.BREAKING, phrase("the package does not build"), Location(path, line, 1))
+        variables = set(_VARIABLE.findall(command["words"]))
+        lists = (match for match in _LIST.finditer(text, 0, command.start()) if match["variable"] in variables)
+        for match in (command, *lists):
+            for word in re.finditer(r"\S+", match["words"]):
+                name = _CURRENT_FOLDER.sub("", word[0]).rstrip('"')
+                file = name if "DIRECTORY" in command["words"] else (PurePosixPath(default_folder) / name).as_posix()
+                if file in names:
+                    names.discard(file)
+                    line = text[: match.start("words") + word.start()].count("\n") + 1
+                    message = phrase("names '{file}', which no longer exists", file=name)
+                    yield Change(
+                        message, Effect.BREAKING, phrase("the package does not build"), Location(path, line, 1)
+                    )
 
 
 def _find_lost_includes(versions: Versions, headers: Sequence[str]) -> Iterator[tuple[str, Change]]:

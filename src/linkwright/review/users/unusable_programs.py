@@ -1,4 +1,4 @@
-"""Find added scripts that ROS does not find, although it finds the other scripts of their folder."""
+"""Find added scripts that ROS does not find, although they start nodes or it finds the others of their folder."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from linkwright.review.launches.missing_programs import RepositoryPackage
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py")
+_NODE_PARTS = ("rclpy.init(", "rclpy.spin", "__main__")
+"""What the text of a script that starts a node contains."""
 
 
 def find_unusable_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -34,17 +36,25 @@ def _is_script(version: Version, path: str) -> bool:
 
 
 def _find_fault(version: Version, path: str, package: RepositoryPackage) -> Phrase | None:
-    """Return why ROS does not find a script, or None if it may find it, or finds no other script of the folder."""
+    """Return why ROS does not find a script, or None if it may find it, or if the script may be no program."""
     name = PurePosixPath(path).name
     if not package.is_ros1:
         names = {PurePosixPath(other).name for other in _list_others(version, path)}
-        is_lost = not names.isdisjoint(package.programs) and package.lacks(name)
+        is_program = not names.isdisjoint(package.programs) or _is_node(version, path)
+        is_lost = is_program and bool(package.programs) and package.lacks(name)
         return phrase("no build file installs the program, so that ros2 run does not find it") if is_lost else None
     others = [version.file(other) for other in _list_others(version, path)]
     is_lost = not os.access(version.file(path), os.X_OK) and any(os.access(other, os.X_OK) for other in others)
     if not is_lost or name in package.programs:
         return None
     return phrase("the program is not executable, so that rosrun does not find it")
+
+
+def _is_node(version: Version, path: str) -> bool:
+    """Return whether a script starts a node of ROS 2 and is no module of a Python package."""
+    text = version.text(path)
+    is_module = version.file(str(PurePosixPath(path).with_name("__init__.py"))).is_file()
+    return not is_module and os.access(version.file(path), os.X_OK) and all(part in text for part in _NODE_PARTS)
 
 
 def _list_others(version: Version, path: str) -> list[str]:
