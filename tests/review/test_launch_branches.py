@@ -9,7 +9,10 @@ import pytest
 
 from tests.review.conftest import sentences
 
-LAUNCH = """from launch import LaunchDescription
+LAUNCH = """import os
+from ament_index_python import get_packages_with_prefixes
+from arm.values import mode, path, ready
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch_ros.actions import Node
 
@@ -96,7 +99,9 @@ def test_equal_actions_of_both_branches_have_no_condition(review_changes, new, e
     assert sorted(found) == sorted(expected)
 
 
-CALLING = """from launch import LaunchDescription
+CALLING = """import os
+from arm.values import mode, path
+from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 from launch_ros.actions import Node
 
@@ -109,7 +114,9 @@ def start(context):
 def generate_launch_description():
     return LaunchDescription([OpaqueFunction(function=start)])
 """
-PLAIN = """from launch import LaunchDescription
+PLAIN = """import os
+from arm.values import mode, path
+from launch import LaunchDescription
 from launch_ros.actions import Node
 
 

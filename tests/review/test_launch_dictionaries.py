@@ -12,7 +12,7 @@ from launch_ros.actions import Node
 
 def make(config, mode="none"):
     actions = []
-    if mode == "debug":
+    if mode in read_modes():
         actions.append(Node(package="arm", executable="viewer"))
     for name, args in config.items():
 {rest}

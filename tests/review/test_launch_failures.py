@@ -11,6 +11,8 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
+from arm.modules import cpu, load
+
 BOTH = ["left", "right"]
 ONE = ["left"]
 TABLE = {"both": 1, "one": 2, "none": 3}
@@ -185,6 +187,7 @@ def generate_launch_description():
     ("new", "expected"),
     [
         ("[driver, hand]", ["uses 'hand', which it does not define or import"]),
+        ("[driver] + [*hands]", ["uses 'hands', which it does not define or import"]),
         ("[driver, map]", ["the built-in function 'map' is in a list of actions"]),
         ("list([driver])", []),
     ],

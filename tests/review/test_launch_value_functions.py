@@ -38,8 +38,11 @@ def load(path, overrides):
     with open(path) as stream:
         return {**yaml.safe_load(stream), **overrides}
 """
-LAUNCH = """from launch import LaunchDescription
+LAUNCH = """import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch_ros.actions import Node
 from arm.helper import common, config_file, joined_file, load, source
 

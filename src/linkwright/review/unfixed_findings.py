@@ -32,7 +32,7 @@ def drop_unfixed_findings(
 ) -> list[Diagnostic]:
     """Return the fixed findings without those that only cannot be found any more.
 
-    A removed file has no findings, and a mesh that is missing now has no size. A package whose manifest has not
+    A removed file has no findings, and a mesh that is missing now has no size. A package whose dependencies have not
     changed, and whose launch files still use another package, still does not name it, also if a third package brings
     it now. So does a package that names it only for its tests.
 
@@ -54,7 +54,11 @@ def drop_unfixed_findings(
             return new_paths.get(path, path) not in without_meshes
         if finding.code != _UNDECLARED_CODE:
             return True
-        is_left = path not in changed or _depends_only_for_tests(versions.new, new_paths.get(path, path), finding)
+        new_path = new_paths.get(path, path)
+        is_left = path not in changed or _read_dependencies(versions.old, path) == _read_dependencies(
+            versions.new, new_path
+        )
+        is_left = is_left or _depends_only_for_tests(versions.new, new_path, finding)
         return not is_left or not _uses_packages(versions.new, finding)
 
     return [finding for finding in fixed if is_fixed(finding)]
@@ -62,15 +66,18 @@ def drop_unfixed_findings(
 
 def _depends_only_for_tests(version: Version, path: str, finding: Diagnostic) -> bool:
     """Return whether a ``package.xml`` names packages that a finding quotes only as dependencies of tests."""
+    dependencies = _read_dependencies(version, path)
+    names = _QUOTED_NAME.findall(str(finding.message))
+    return any({tag for tag, dependency in dependencies if dependency == name} == {_TEST_DEPENDENCY} for name in names)
+
+
+def _read_dependencies(version: Version, path: str) -> set[tuple[str, str]]:
+    """Return the tags and names of the dependencies of a ``package.xml``; none if it cannot be read."""
     try:
         dependencies = Manifest(read_document(str(version.file(path)))).dependencies
     except LinkwrightError:
-        return False
-    names = _QUOTED_NAME.findall(str(finding.message))
-    return any(
-        {dependency.tag for dependency in dependencies if dependency.name == name} == {_TEST_DEPENDENCY}
-        for name in names
-    )
+        return set()
+    return {(dependency.tag, dependency.name) for dependency in dependencies}
 
 
 def _uses_packages(version: Version, finding: Diagnostic) -> bool:

@@ -152,8 +152,8 @@ def find_removal_reason(
         return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
         return find_lost_target_reason(entry, old, new)
-    if any(other.name == entry.name and _has_computed_names(other) for other in new.entries):
-        return None  # an action of a loop, which may start this node, too
+    if any(other.is_unknown_node or (other.name == entry.name and _has_computed_names(other)) for other in new.entries):
+        return None  # for example, an action of a loop, which may start this node, too
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
         other.name.startswith(_JOINT_STATE_PREFIX) for other in new.entries
     ):

@@ -42,7 +42,7 @@ from linkwright.review.launches.included import (
 )
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
-from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
+from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries, start_same_program
 from linkwright.review.launches.missing_programs import find_missing_file, lacks_included_file, lacks_program
 from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.other_code import drop_common_parts, outside
@@ -194,11 +194,15 @@ def _mark_unbreaking(pair: FilePair, *, keeps_renaming: bool = False) -> None:
     ]
 
 
-def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
+def _report_replaced(
+    pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, LaunchOutline]
+) -> None:
     """Report an action that replaces a different one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
         text = phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry))
+        if start_same_program(old_entry, new_entry, outlines):
+            text = phrase("{change}, by default the same", change=text)
         is_lost = lacks_included_file(pair.versions.new, new_entry)
         is_lost = is_lost and not lacks_included_file(pair.versions.old, old_entry)
         reason = phrase("the launch file does not find the file") if is_lost else None

@@ -172,6 +172,8 @@ def _compute_replacement_score(
     name = old.settings.get("name")
     if name and name == new.settings.get("name") and _have_same_namespace(old, new, outlines):
         return 3.0 + similarity
+    if start_same_program(old, new, outlines):
+        return 2.5 + similarity
     if old_package == new_package and _serve_same_names(old, new) and _stops(old_program) == _stops(new_program):
         return 2.0 + similarity
     old_file, new_file = (entry.name.rpartition("/")[2] for entry in (old, new))
@@ -191,6 +193,14 @@ def _compute_replacement_score(
         similarity >= MIN_SIMILARITY or name_similarity == 1.0
     )
     return name_similarity + similarity if is_similar and is_renamed else 0.0
+
+
+def start_same_program(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:
+    """Return whether two nodes have the same program with the defaults of arguments, which one of them names."""
+    is_chosen = old.name != new.name and "$(" in f"{old.name}{new.name}"
+    return (
+        old.kind == new.kind == "node" and is_chosen and outlines[0].resolve(old.name) == outlines[1].resolve(new.name)
+    )
 
 
 def _have_same_parameters(old: Entry, new: Entry) -> bool:

@@ -67,6 +67,8 @@ _NAMESPACE_SEPARATOR = "\n"
 _MAX_VARIABLE_DEPTH = 5
 """The maximum depth of variables in the values of variables."""
 _MAX_CHARACTERS = 10_000
+NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
+"""The classes of Python launch files that make nodes."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,12 @@ class Entry:
     def has_value(self) -> bool:
         """Whether it declares an argument or sets a variable."""
         return self.kind in ("argument", "variable")
+
+    @property
+    def is_unknown_node(self) -> bool:
+        """Whether it is a node of a Python launch file whose program is unknown, such as ``Node(**settings)``."""
+        is_class = self.kind == "node" and self.name.rpartition(".")[2] in NODE_CLASSES
+        return is_class and MISSING_ARGUMENT not in self.settings
 
     def is_identity_remapping(self, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a changed setting only adds or removes a remapping of a name to itself."""

@@ -261,9 +261,12 @@ class _Reader:
         """Find the actions of both branches, with the condition of the statement."""
         holds = self.texts.evaluate_parameter(node.test)
         if holds is not None:
+            count = len(self.scopes)
             for statement in node.body if holds else node.orelse:
                 scope = scope.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
                 self.visit(statement, scope)
+            if len(self.scopes) > count:
+                self.branches.add(id(node))
             return
         conditions = format_branches(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
+from linkwright.review.launches.keyword_dictionaries import find_keyword_values
 from linkwright.review.launches.list_additions import AddedItem, find_added_items, find_later_items
 from linkwright.review.launches.node_settings import format_settings, split_choice, split_parameters, split_remappings
 from linkwright.review.launches.outlines import (
     CONDITION,
     MISSING_ARGUMENT,
+    NODE_CLASSES,
     UNKNOWN_ARGUMENT,
     Entry,
     Scope,
@@ -23,7 +25,6 @@ from linkwright.review.launches.substitution_texts import omit_program_search
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 from linkwright.review.launches.titles import shorten_command
 
-_NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESS_CLASSES = ("ExecuteProcess", "ExecuteLocal")
 _ARGUMENT_CLASSES = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
 """The classes that declare arguments; the second is one of MoveIt."""
@@ -31,7 +32,7 @@ _ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "
 _OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 _INCLUDING_FUNCTIONS = ("include_launch_py_description", "include_scoped_launch_py_description")
 """The functions of launch_pal that include a launch file by its package and the parts of its path."""
-ACTIONS = frozenset({*_INCLUDING_FUNCTIONS, *_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
+ACTIONS = frozenset({*_INCLUDING_FUNCTIONS, *NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
 _ALIASES = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
 """The names of arguments of nodes before ROS 2 Foxy."""
@@ -67,11 +68,9 @@ class ActionReader:
             scope: the settings that the groups around it give to the action.
         """
         text = self.texts.text
-        keywords = {
-            _ALIASES.get(keyword.arg, keyword.arg): keyword.value
-            for keyword in call.keywords
-            if keyword.arg is not None
-        }
+        given = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+        given = {**find_keyword_values(call, self.texts), **given}
+        keywords = {_ALIASES.get(key, key): value for key, value in given.items()}
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first_text, second_text = map(text, find_name_and_value(call, function))
         settings: dict[str, str] = {}
@@ -167,7 +166,7 @@ class ActionReader:
         if not isinstance(node, ast.Call):
             return self.texts.text(node)
         function = called_name(node).rpartition(".")[2]
-        if function in _NODE_CLASSES:
+        if function in NODE_CLASSES:
             return self.read_action(node, function, _EMPTY_SCOPE).name
         if function in _PROCESS_CLASSES and is_item:
             return shorten_command(self.read_action(node, function, _EMPTY_SCOPE).name)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.chosen_texts import make_choice, quote_text
@@ -34,6 +36,16 @@ _MAX_FUNCTION_DEPTH = 3
 """The maximum number of functions that return the value of each other."""
 _VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
 """The expressions of a function whose value is known, apart from calls and names."""
+_COMPARISONS: Mapping[type[ast.cmpop], Callable[[Any, Any], bool]] = {
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _NON_STRING = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
@@ -119,7 +131,16 @@ class ExpressionTexts:
         bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
         if bound is None and isinstance(node, ast.Call) and (result := self._find_result(node)) is not None:
             return result.texts.resolve(result.node)
-        return bound or BoundExpression(self, node)
+        operand = self._choose_operand(node) if isinstance(node, ast.BoolOp) else None
+        return self.resolve(operand) if operand is not None else bound or BoundExpression(self, node)
+
+    def _choose_operand(self, node: ast.BoolOp) -> ast.expr | None:
+        """Return the value of ``a or b`` or ``a and b`` if constants of parameters decide it, or None."""
+        for operand in node.values[:-1]:
+            holds = self.evaluate_parameter(operand)
+            if holds is None or holds is isinstance(node.op, ast.Or):
+                return None if holds is None else operand
+        return node.values[-1]
 
     def _find_result(self, call: ast.Call) -> BoundExpression | None:
         """Return the expression that a function of the repository returns, or None if its value is unknown."""
@@ -152,17 +173,20 @@ class ExpressionTexts:
         if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
             holds = self.evaluate_parameter(test.operand)
             return None if holds is None else not holds
-        is_none = isinstance(test, ast.Compare) and len(test.ops) == 1 and isinstance(test.ops[0], (ast.Is, ast.IsNot))
-        name = test.left if isinstance(test, ast.Compare) and is_none else test
+        comparison = test if isinstance(test, ast.Compare) and len(test.ops) == 1 else None
+        name = test if comparison is None else comparison.left
         bound = self._values.get(name.id) if isinstance(name, ast.Name) else None
         if bound is None or not isinstance(bound.node, ast.Constant):
             return None
-        if not isinstance(test, ast.Compare):
+        if comparison is None:
             return bool(bound.node.value)
-        other = test.comparators[0]
-        if not isinstance(other, ast.Constant) or other.value is not None:
+        other, compare = comparison.comparators[0], _COMPARISONS.get(type(comparison.ops[0]))
+        if not isinstance(other, ast.Constant) or compare is None:
             return None
-        return (bound.node.value is None) == isinstance(test.ops[0], ast.Is)
+        try:
+            return bool(compare(bound.node.value, other.value))
+        except TypeError:
+            return None
 
     def is_known(self, node: ast.expr) -> bool:
         """Return whether an expression is not a call of an unknown function, or a name of unknown value."""
@@ -415,6 +439,8 @@ class ExpressionTexts:
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
+        if isinstance(node, ast.BoolOp) and (operand := self._choose_operand(node)) is not None:
+            return part(operand)
         choice = self._format_choice(node, part)
         if choice is not None:
             return choice

@@ -30,22 +30,20 @@ def report_undefined_names(pair: FilePair) -> None:
     for name, span in new.undefined_names.items():
         if name in old.bound_names:
             text = phrase("uses '{name}', which it no longer defines or imports", name=name)
-            pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
+        elif name not in old.undefined_names:
+            text = phrase("uses '{name}', which it does not define or import", name=name)
+        else:
+            continue
+        pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
     if not any(_find_called_literals(try_read_source(pair.old_file))):
         for span in _find_called_literals(try_read_source(pair.new_file)):
             text = phrase("a comma is missing: an item of a list is called or indexed by the next one")
             pair.add(text, pair.location(span), phrase("the launch file fails"))
     known = {*old.bound_names, *(name for name, _ in _find_unbound_actions(try_read_source(pair.old_file)))}
     for name, span in _find_unbound_actions(try_read_source(pair.new_file)):
-        if name in known:
-            continue
-        if callable(getattr(builtins, name, None)):
+        if name not in known and callable(getattr(builtins, name, None)):
             text = phrase("the built-in function '{name}' is in a list of actions", name=name)
-        elif name in new.undefined_names:
-            text = phrase("uses '{name}', which it does not define or import", name=name)
-        else:
-            continue
-        pair.add(text, pair.location(span), phrase("the launch file fails"))
+            pair.add(text, pair.location(span), phrase("the launch file fails"))
 
 
 def _find_unbound_actions(source: SourceText | None) -> Iterator[tuple[str, Span]]:
