@@ -196,3 +196,11 @@ def test_program_of_a_folder_without_a_manifest_was_not_found(repository, compar
     removed = "installed executables removed: 'drive'"
     assert removed in sentences(subject(result, "arm/CMakeLists.txt"))
     assert (removed in breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("gz-sim${GZ_VERSION}", False), ("gz-msgs${GZ_VERSION}", True)])
+def test_exported_name_with_a_variable_can_be_the_old_one(repository, compare, name, is_breaking):
+    cmake = "project(arm)\nset(GZ_VERSION ${gz-sim8_VERSION_MAJOR})\nament_export_dependencies(%s)\nament_package()\n"
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake % "gz-sim8"})
+    repository.write({"arm/CMakeLists.txt": cmake % name})
+    assert breaking(compare(repository)) == (["exported dependencies removed: 'gz-sim8'"] if is_breaking else [])
