@@ -180,3 +180,27 @@ def test_build_file_of_ament_with_commands_of_catkin_built_nothing(repository, c
     assert bool(breaking(result)) is is_breaking
     failed = "the old version calls 'catkin_install_python' without catkin, so that its build fails"
     assert (failed in sentences(subject(result, "arm/CMakeLists.txt"))) is not is_breaking
+
+
+@pytest.mark.parametrize(
+    ("manifest", "folder", "is_breaking"),
+    [("arm/package.xml", "lib/arm", True), ("hand/package.xml", "lib/arm", False), ("hand/package.xml", "bin", True)],
+)
+def test_program_of_a_folder_without_a_manifest_was_not_found(repository, compare, manifest, folder, is_breaking):
+    cmake = "project(arm)\nadd_executable(drive src/drive.cpp)\n{}"
+    install = f"install(TARGETS drive RUNTIME DESTINATION {folder})\n"
+    files = {manifest: MANIFEST, "arm/src/drive.cpp": "int main() {}\n"}
+    repository.commit({**files, "arm/CMakeLists.txt": cmake.format(install)})
+    repository.write({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format("")})
+    result = compare(repository)
+    removed = "installed executables removed: 'drive'"
+    assert removed in sentences(subject(result, "arm/CMakeLists.txt"))
+    assert (removed in breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("gz-sim${GZ_VERSION}", False), ("gz-msgs${GZ_VERSION}", True)])
+def test_exported_name_with_a_variable_can_be_the_old_one(repository, compare, name, is_breaking):
+    cmake = "project(arm)\nset(GZ_VERSION ${gz-sim8_VERSION_MAJOR})\nament_export_dependencies(%s)\nament_package()\n"
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake % "gz-sim8"})
+    repository.write({"arm/CMakeLists.txt": cmake % name})
+    assert breaking(compare(repository)) == (["exported dependencies removed: 'gz-sim8'"] if is_breaking else [])

@@ -36,6 +36,8 @@ public:
         ("int * const", "int *"),
         ("std::shared_ptr<Pose const>", "std::shared_ptr<const Pose>"),
         ("std::map<std::string, unsigned> const &", "const std::map<std::string,unsigned int>&"),
+        ("std::function<void (int , double)>", "std::function<void(int, double)>"),
+        ("std::function<void ( Pose const & )>", "std::function<void(const Pose&)>"),
     ],
 )
 def test_notations_of_a_type_are_equal(first, second):

@@ -83,6 +83,16 @@ def test_an_unchanged_name_is_no_change(repository, compare):
     assert not any("added:" in line for line in lines)
 
 
+def test_a_class_whose_source_moves_into_a_subfolder_keeps_its_names(repository, compare):
+    source = SOURCE.format("a_(1)", 'list_.push_back(Server(node, "home"));')
+    repository.commit({**FILES, PATH: source})
+    (repository.root / "arm/src/events.cpp").unlink()
+    repository.write({"arm/src/server/events.cpp": CODE, PATH: source.replace("a_(1)", "a_(2)")})
+    comparison = compare(repository)
+    assert not breaking(comparison)
+    assert not any("home" in line for line in sentences(subject(comparison, PATH)))
+
+
 NAMED_NODE = """#include <rclcpp/rclcpp.hpp>
 class Arm : public rclcpp::Node
 {

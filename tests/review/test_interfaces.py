@@ -150,6 +150,17 @@ def test_misspelled_primitive_type_in_ros1_is_still_a_mistake(repository, compar
     assert breaking(compare(repository)) == ["can no longer be read: there is no type 'itn32'"]
 
 
+@pytest.mark.parametrize(("other_tool", "start"), [("", "nodes "), ("ament_cmake", "in ROS 1, nodes ")])
+def test_reason_of_an_added_constant_names_ros1_if_the_package_is_for_both_versions(
+    repository, compare, other_tool, start
+):
+    other = f"<buildtool_depend>{other_tool}</buildtool_depend></package>" if other_tool else "</package>"
+    repository.commit({"package.xml": ROS1_MANIFEST.replace("</package>", other), "msg/State.msg": "int32 id\n"})
+    repository.write({"msg/State.msg": "int32 id\nint32 SLOW = 1\n"})
+    (change,) = subject(compare(repository), "msg/State.msg").changes
+    assert str(change.reason).startswith(start)
+
+
 def test_many_added_and_removed_fields_share_a_line(repository, compare):
     repository.commit({"p/msg/State.msg": "float32 a\nfloat32 b\nfloat32 c\nint32 id\n"})
     repository.write({"p/msg/State.msg": "int32 id\nstring[] one_name\nbool is_two\nuint8 three_count\n"})

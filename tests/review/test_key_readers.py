@@ -158,3 +158,22 @@ def test_node_that_moved_to_a_file_which_launch_files_load_has_its_parameters(
     repository.write({PATH: NODE, **({path: leg} if path else {})})
     found = [line for line in breaking(compare(repository)) if "leg_node" in line]
     assert bool(found) == is_breaking
+
+
+@pytest.mark.parametrize(
+    ("sources", "is_breaking"),
+    [
+        ({"b/package.xml": PACKAGE_XML.replace("arm_description", "arm_node")}, False),
+        ({"b/package.xml": PACKAGE_XML.replace("arm_description", "other")}, True),
+        ({"b/package.xml": PACKAGE_XML.replace("arm_description", "arm_node"), "b/src/b.cpp": 'Node n("arm_node");\n'},
+         True),
+        ({"b/package.xml": PACKAGE_XML.replace("arm_description", "arm_node"),
+          "b/urdf/b.xacro": '<robot name="b"><ros2_control name="arm_node" type="system"/></robot>\n'}, True),
+    ],
+)  # fmt: skip
+def test_a_removed_section_with_the_name_of_a_package_needs_a_node_of_that_name(
+    repository, compare, sources, is_breaking
+):
+    repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: f"leg:\n  rate: 1\n{NODE}", **sources})
+    repository.write({PATH: "leg:\n  rate: 1\n"})
+    assert bool(breaking(compare(repository))) is is_breaking

@@ -10,7 +10,8 @@ from pathlib import PurePosixPath
 from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase
-from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
+from linkwright.packages.readers.cmake_values import UNKNOWN
 from linkwright.review.changes import Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
@@ -126,7 +127,9 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         unused = [
             fact
             for fact in removed
-            if fact.name in private or is_unused_export(pair.versions.old, pair.old_path, old, new, fact)
+            if fact.name in private
+            or any(_can_be_same(other.name, fact.name) for other in added)
+            or is_unused_export(pair.versions.old, pair.old_path, old, new, fact)
         ]
         _report_unpaired(pair, kind, unused, [], is_replaced=True)
         used = [fact for fact in removed if fact not in unused]
@@ -240,9 +243,23 @@ def _report_unpaired(
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
-        is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
+        is_harmless = is_replaced or all(
+            is_test_condition(fact.condition) or _was_outside_packages(pair, fact) for fact in removed
+        )
         reason = None if is_harmless else kind.reason
         pair.add(_format_facts(kind, removed, is_added=False), location, reason)
+
+
+def _was_outside_packages(pair: FilePair, fact: Fact) -> bool:
+    """Return whether no launch file found an old program, because its folder had no manifest and is none of PATH."""
+    is_in_package = pair.versions.old.package_of(pair.old_path, (MANIFEST, ROSBUILD_MANIFEST)) is not None
+    return fact.kind is FactKind.EXECUTABLE and fact.value.startswith(_PROGRAM_FOLDER_PREFIX) and not is_in_package
+
+
+def _can_be_same(name: str, known: str) -> bool:
+    """Return whether a name of which variables are a part, such as ``gz-sim${}``, can be a known name."""
+    parts = name.split(UNKNOWN)
+    return len(parts) > 1 and any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), known) is not None
 
 
 def _report_missing(pair: FilePair, facts: Sequence[Fact]) -> None:

@@ -60,15 +60,18 @@ def compare_interfaces(pair: FilePair) -> None:
 
 def _name_containing_interfaces(pair: FilePair) -> None:
     """Add the other types that change with this one, because they contain it, to the reasons of breaking changes."""
-    reason = _make_exchange_reason()
-    if all(change.reason != reason for change in pair.changes):
+    reasons = (_make_exchange_reason(), _make_ros1_exchange_reason())
+    if all(change.reason not in reasons for change in pair.changes):
         return
     changed = {file.new_path for file in pair.versions.changed_files}
     paths = [path for path in find_containing_interfaces(pair.versions.new, pair.new_path) if path not in changed]
     if paths:
         names = joined_first((f"'{PurePosixPath(path).name}'" for path in paths), MAX_NAMES)
-        more = phrase("{reason}; the same holds for the types that contain it: {names}", reason=reason, names=names)
-        pair.changes = [replace(change, reason=more) if change.reason == reason else change for change in pair.changes]
+        for reason in reasons:
+            more = phrase("{reason}; the same holds for the types that contain it: {names}", reason=reason, names=names)
+            pair.changes = [
+                replace(change, reason=more) if change.reason == reason else change for change in pair.changes
+            ]
 
 
 def _read_ros1_definition(pair: FilePair) -> tuple[Mapping[str, Structure], Mapping[str, Structure]] | None:
@@ -403,6 +406,18 @@ def _make_constant_reason() -> Phrase:
     return phrase("programs that use the constant do not build or start")
 
 
+def _make_constants_reason(file: Path) -> Phrase:
+    """Return the reason why other constants of a type are breaking; its hash in ROS 2 leaves them out (REP 2016)."""
+    package = enclosing_package(file.parent)
+    if package is not None and len(Manifest(read_document(str(package[1] / MANIFEST))).ros_versions) > 1:
+        return _make_ros1_exchange_reason()
+    return _make_exchange_reason()
+
+
+def _make_ros1_exchange_reason() -> Phrase:
+    return phrase("in ROS 1, nodes that were built with the old type do not exchange messages with new ones")
+
+
 def _compare_constants(
     pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, locations: _Locations, *, is_ros1: bool
 ) -> None:
@@ -425,7 +440,7 @@ def _compare_constants(
         texts = [phrase("constants added: {constants}", constants=shown)]
     first = next(iter(added), part).removeprefix(part)
     for text in texts:
-        pair.add(text, locations.find(first), _make_exchange_reason() if is_ros1 else None)
+        pair.add(text, locations.find(first), _make_constants_reason(pair.new_file) if is_ros1 else None)
     removed = [part + name for name in old_values if name not in new_values]
     texts = [phrase("constant '{name}' removed", name=name) for name in removed]
     reason = _make_constant_reason()

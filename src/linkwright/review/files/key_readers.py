@@ -17,6 +17,7 @@ from linkwright.review.list_changes import EMPTY, list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _PROGRAM_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
 _SOURCE_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
@@ -105,6 +106,21 @@ class KeyReaders:
             new_nodes: the nodes that only the new version of the file has.
         """
         return not self._is_node_named(node) and any(map(self._is_node_named, new_nodes))
+
+    def is_package_without_node(self, name: str) -> bool:
+        """Return whether a name is that of a package of the repository, and no program or description has it as a text.
+
+        Then no node has the name, such as that of a section for hardware that ros2_control loads as a plugin.
+        """
+        if name not in self.versions.old.shares:
+            return False
+        pattern = re.compile(rf"[\"'/]{re.escape(name)}[\"']")
+        versions = (self.versions.old, self.versions.new)
+        return not any(
+            pattern.search(version.text(path))
+            for version in versions
+            for path in version.paths((*_PROGRAM_SUFFIXES, *_DESCRIPTION_SUFFIXES))
+        )
 
     def declare_type(self, node: str, parameter: str, value: YamlValue) -> bool:
         """Return whether the packages with a node declare one of its parameters with the type of a value.

@@ -204,6 +204,8 @@ class NameRules:
                 return None  # the line about its type has the reason
             if node["node"] in self._clock_nodes or self._readers.have_renamed_node(node["node"], self._added_nodes):
                 return None
+            if self._readers.is_package_without_node(node["node"]):
+                return None
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         lost = _find_name_items(old) - self._find_plugins(parameter) if _PLUGIN_LIST.search(parameter) else set[str]()
         if lost:

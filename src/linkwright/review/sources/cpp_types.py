@@ -24,7 +24,7 @@ def normalize_type(text: str) -> str:
     ``const`` stands first and is left out for values, which it does not concern; an array is a pointer.
     """
     text = _KINDS.sub("", " ".join(text.split()))
-    text = re.sub(r"\s*([*&<>,:])\s*", r"\1", text)
+    text = re.sub(r"\s*([*&<>,:()])\s*", r"\1", text)
     text = re.sub(r"(?<=[*&>])const\b", " const", text)
     text = _INTEGER.sub(lambda match: _normalize_integer(match[0]), text)
     text = _INNER_EAST_CONST.sub(r"const \1", text)

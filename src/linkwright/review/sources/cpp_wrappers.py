@@ -172,7 +172,7 @@ def _make_call(use: HelperUse, wrapper: Helper, text: str, start: int, end: int)
 def read_sources_of_headers(path: Path, text: str) -> list[str]:
     """Return the texts, without comments, of the sources of the package that define the included classes.
 
-    Such a source has the name of an included header.
+    Such a source has the name of an included header, and is beside the including source or below the folder ``src``.
 
     Args:
         path: the path of the source that includes the headers.
@@ -182,9 +182,10 @@ def read_sources_of_headers(path: Path, text: str) -> list[str]:
     if path.suffix in HEADER_SUFFIXES or package is None:
         return []
     stems = re.findall(r'^[ \t]*#[ \t]*include[ \t]*["<](?:[^">\n]*/)?(\w+)\.(?:hpp|hh|hxx|h)[">]', text, re.MULTILINE)
-    folders = dict.fromkeys((path.parent, package[1] / "src"))
     suffixes = [suffix for suffix in CPP_SUFFIXES if suffix not in HEADER_SUFFIXES]
-    files = [folder / f"{stem}{suffix}" for folder in folders for stem in stems for suffix in suffixes]
+    names = {f"{stem}{suffix}": None for stem in stems for suffix in suffixes}
+    below = sorted(file for file in (package[1] / "src").rglob("*") if file.name in names)
+    files = [*(path.parent / name for name in names), *below]
     return [
         blank_comments(file.read_text("utf-8", errors="replace"))
         for file in dict.fromkeys(files)
