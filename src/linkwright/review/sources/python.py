@@ -479,9 +479,10 @@ class _Reader:
                 self._names.add(SourceName(NameKind.OPTION, f"--{name}", "", self._python.span(item)))
 
     def _read_parameter(self, call: ast.Call, function: str) -> None:
-        index = 2 if function == "get_parameter_or" else 1
-        keyword = "value" if function == "declare_parameter" else "default"
-        node, value = get_argument(call, 0, "name"), get_argument(call, index, keyword)
+        keyword = {"declare_parameter": "value", "get_parameter_or": "alternative_value"}.get(function, "default")
+        node, value = get_argument(call, 0, "name"), get_argument(call, 1, keyword)
+        if function == "get_parameter_or" and isinstance(value, ast.Call) and called_name(value).endswith("Parameter"):
+            value = get_argument(value, 2, "value")
         is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
         if is_ros1 and self._python.text(node) is None:
             return  # a different function with the same name
