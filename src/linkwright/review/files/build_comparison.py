@@ -257,7 +257,7 @@ def _was_outside_packages(pair: FilePair, fact: Fact) -> bool:
 
 
 def _can_be_same(name: str, known: str) -> bool:
-    """Return whether a name of which variables are a part, such as ``gz-sim${}``, can be a known name."""
+    """Return whether a name with variables, such as ``gz-sim${}``, can be a known name."""
     parts = name.split(UNKNOWN)
     return len(parts) > 1 and any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), known) is not None
 

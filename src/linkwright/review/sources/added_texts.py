@@ -37,7 +37,7 @@ _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
 _CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _ARITHMETIC = frozenset("+-*/")
 _PROGRAM_NAME = "__main__"
-"""The name of a module of Python that is run as a program, which is no key."""
+"""The name of a module of Python that is run as a program. It is not a key."""
 _NO_VALUES = ("None", "nullptr", "NULL")
 _CHANGES = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":=", "++", "--", "in", ","})
 """The tokens after a name that a statement assigns or changes, such as the name of a loop."""

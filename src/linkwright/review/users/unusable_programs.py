@@ -14,7 +14,7 @@ from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py")
 _NODE_PARTS = ("rclpy.init(", "rclpy.spin", "__main__")
-"""What the text of a script that starts a node contains."""
+"""The texts that a script contains if it starts a node."""
 
 
 def find_unusable_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -36,7 +36,7 @@ def _is_script(version: Version, path: str) -> bool:
 
 
 def _find_fault(version: Version, path: str, package: RepositoryPackage) -> Phrase | None:
-    """Return why ROS does not find a script, or None if it may find it, or if the script may be no program."""
+    """Return why ROS does not find a script, or None if it may find it, or if the script may not be a program."""
     name = PurePosixPath(path).name
     if not package.is_ros1:
         names = {PurePosixPath(other).name for other in _list_others(version, path)}
@@ -51,7 +51,7 @@ def _find_fault(version: Version, path: str, package: RepositoryPackage) -> Phra
 
 
 def _is_node(version: Version, path: str) -> bool:
-    """Return whether a script starts a node of ROS 2 and is no module of a Python package."""
+    """Return whether a script starts a node of ROS 2 and is not a module of a Python package."""
     text = version.text(path)
     is_module = version.file(str(PurePosixPath(path).with_name("__init__.py"))).is_file()
     return not is_module and os.access(version.file(path), os.X_OK) and all(part in text for part in _NODE_PARTS)
