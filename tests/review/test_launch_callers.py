@@ -152,7 +152,9 @@ def test_include_of_renamed_file_is_replaced(repository, compare):
     ],
 )
 def test_other_notation_of_a_path_or_command_is_no_change(review_changes, old, new):
-    text = """def generate_launch_description():
+    text = """from launch.substitutions import PathSubstitution
+
+def generate_launch_description():
     return LaunchDescription([
         Node(package="arm", executable="driver", parameters=[
             {"file": PathJoinSubstitution([FindPackageShare("arm"), "a.yaml"])},
@@ -308,7 +310,9 @@ def generate_launch_description():
 
 
 def test_prefix_of_frames_that_is_unknown_is_not_breaking(review_changes):
-    text = """def generate_launch_description():
+    text = """from arm import Mixin
+
+def generate_launch_description():
     publisher = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}])
     return LaunchDescription([publisher])
 """
@@ -362,7 +366,8 @@ def test_moved_action_names_its_other_settings(repository, compare, old, new, ex
     assert sentences(subject(compare(repository), "arm/launch/arm.launch")) == [expected]
 
 
-LIFECYCLE = """from launch import LaunchDescription
+LIFECYCLE = """from arm import make
+from launch import LaunchDescription
 from launch.actions import EmitEvent
 from launch_ros.actions import Node, LifecycleNode
 

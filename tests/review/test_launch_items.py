@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-LAUNCH = """from launch import LaunchDescription
+LAUNCH = """from arm import find
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
