@@ -56,6 +56,7 @@ PARAMETERS = {
     "node_names": ["a"],
     "joints": ["a"],
     "goal_names": ["numbers", "point"],
+    "target_frames": ["base"],
     "numbers": [0.0],
     "point.positions": [0.0],
 }
