@@ -34,7 +34,7 @@ INCLUDE = """IncludeLaunchDescription(
     [
         ("get_package_share_directory('docking')", "", True),
         ("folder", "folder = get_package_share_directory('docking')", True),
-        ("folder", "folder = '' if LAUNCH else get_package_share_directory('docking')", False),
+        ("folder", "folder = '' if __name__ else get_package_share_directory('docking')", False),
         ("FindPackageShare('docking')", "", False),
     ],
 )

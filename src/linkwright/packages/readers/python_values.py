@@ -7,15 +7,16 @@ folders of packages, and patterns of file names. Every other value is `UNKNOWN`,
 from __future__ import annotations
 
 import ast
+import operator
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.loading.lean_typing import Union
+from linkwright.loading.lean_typing import Any, Union
 from linkwright.packages.readers.import_aliases import replace_import_aliases
 
 
@@ -56,6 +57,19 @@ class Pattern:
 
 Value = Union[UnknownType, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - recursive
 
+PYTHON_COMPARISONS: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda item, items: item in items,
+    ast.NotIn: lambda item, items: item not in items,
+}
+"""The functions that compare two values, by the operators of Python."""
 _MAX_DEPTH = 40
 _JOIN_FUNCTIONS = frozenset(
     {"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"}

@@ -8,12 +8,12 @@ conditions, functions, and the library functions in `linkwright.packages.readers
 from __future__ import annotations
 
 import ast
-import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.installed import InstalledFile
+from linkwright.packages.readers.python_values import PYTHON_COMPARISONS
 from linkwright.packages.readers.setup_library import (
     METHODS_BY_TYPE,
     PATH_ATTRIBUTES,
@@ -29,18 +29,6 @@ _MAX_STEPS = 300_000
 _MAX_WEIGHT = 100_000
 _WEIGHT_PER_STEP = 32
 _MAX_DEPTH = 40
-_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.Is: operator.is_,
-    ast.IsNot: operator.is_not,
-    ast.In: lambda item, items: item in items,
-    ast.NotIn: lambda item, items: item not in items,
-}
 _BUILTINS: dict[str, Callable[..., Any]] = {
     **{call.__name__: call for call in (len, list, tuple, set, dict, str, zip, sorted, any, all, bool, int, min, max)},
     **{call.__name__: call for call in (enumerate, reversed, map, filter)},
@@ -331,7 +319,7 @@ class _Interpreter:
     def _comparison(self, node: ast.Compare) -> bool:
         left = self._evaluate_known(node.left)
         for operation, right in zip(node.ops, map(self._evaluate_known, node.comparators), strict=True):
-            if not _COMPARISONS[type(operation)](left, right):
+            if not PYTHON_COMPARISONS[type(operation)](left, right):
                 return False
             left = right
         return True

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import ast
 import hashlib
-import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.packages.readers.python_values import PYTHON_COMPARISONS, PythonFile, called_name
 from linkwright.review.launches.chosen_texts import make_choice, quote_text
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
@@ -36,16 +34,6 @@ _MAX_FUNCTION_DEPTH = 3
 """The maximum number of functions that return the value of each other."""
 _VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
 """The expressions of a function whose value is known, apart from calls and names."""
-_COMPARISONS: Mapping[type[ast.cmpop], Callable[[Any, Any], bool]] = {
-    ast.Is: operator.is_,
-    ast.IsNot: operator.is_not,
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-}
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _NON_STRING = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
@@ -180,7 +168,7 @@ class ExpressionTexts:
             return None
         if comparison is None:
             return bool(bound.node.value)
-        other, compare = comparison.comparators[0], _COMPARISONS.get(type(comparison.ops[0]))
+        other, compare = comparison.comparators[0], PYTHON_COMPARISONS.get(type(comparison.ops[0]))
         if not isinstance(other, ast.Constant) or compare is None:
             return None
         try:
