@@ -7,7 +7,7 @@ import pytest
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
-PATH = "lamp/launch/lamp.launch.py"
+PATH = "crane/launch/crane.launch.py"
 OLD = """from launch import LaunchDescription
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -18,7 +18,7 @@ def generate_launch_description():
         Node(package="bulbs", executable="bulb", name="bulb", parameters=["a.yaml"], remappings=[("light", "sun")]),
     ])
 """
-NEW = """from lamp.nodes import make_launch
+NEW = """from crane.nodes import make_launch
 
 
 def generate_launch_description():
@@ -50,12 +50,12 @@ UNKNOWN = HELPER.replace("{", "read({").replace("}", "})")
     ],
 )
 def test_a_helper_that_unpacks_a_dictionary_starts_the_same_node(repository, compare, call, helper, expected):
-    manifest = PACKAGE_XML.replace("arm_description", "lamp")
-    files = {"lamp/package.xml": manifest, "lamp/lamp/__init__.py": "", PATH: OLD}
+    manifest = PACKAGE_XML.replace("arm_description", "crane")
+    files = {"crane/package.xml": manifest, "crane/crane/__init__.py": "", PATH: OLD}
     repository.commit(files)
     changed = manifest.replace("<version>1", "<version>2")
     new = NEW.replace('"bulbs", "bulb", ', call)
-    repository.write({PATH: new, "lamp/lamp/nodes.py": helper, "lamp/package.xml": changed})
+    repository.write({PATH: new, "crane/crane/nodes.py": helper, "crane/package.xml": changed})
     result = compare(repository)
     lines = [line for line in sentences(subject(result, PATH)) if line.startswith("node ")]
     assert len(lines) == len(expected)
@@ -70,7 +70,7 @@ from launch_ros.actions import Node
 
 
 def stage(name, delay):
-    node = Node(package="lamp", executable=name)
+    node = Node(package="crane", executable=name)
     if delay > 0:
         return TimerAction(period=delay, actions=[node])
     return TimerAction(period=0.0, actions=[node])
@@ -84,7 +84,7 @@ CHECK = "    if delay > 0:\n        return TimerAction(period=delay, actions=[no
 
 def test_a_comparison_of_a_constant_of_a_call_is_known(review_changes):
     text = STAGES.replace("period=0.0", "period=delay")
-    assert review_changes("lamp.launch.py", text, CHECK, "")[1] == []
-    changes, _ = review_changes("lamp.launch.py", STAGES, "delay > 0", "delay > 9")
+    assert review_changes("crane.launch.py", text, CHECK, "")[1] == []
+    changes, _ = review_changes("crane.launch.py", STAGES, "delay > 0", "delay > 9")
     assert [change for change in changes if "if `" in change] == []
     assert any("after 5.0 s -> after 0.0 s" in change for change in changes), changes
