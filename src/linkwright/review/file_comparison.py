@@ -47,7 +47,7 @@ def compare_file(
         new_path: the path in the new version; None for a removed file.
         drawings: the kinds of drawings of robots that look different.
     """
-    if old_path is not None and _is_without_users(versions.old, rule, old_path):
+    if old_path is not None and old_path != new_path and _is_without_users(versions.old, rule, old_path):
         rule = replace(rule, removal_reason=None)
     is_test = rule.kind in _TESTED_KINDS and old_path is not None and is_test_file(versions.old, old_path)
     if old_path is None or new_path is None:

@@ -67,7 +67,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
 
 def _find_changed_option(old: list[str], new: list[str]) -> str | None:
     """Return the option of a command line whose value is the only difference, with both values, or None."""
-    changed = [number for number, item in enumerate(new) if len(old) == len(new) and item != old[number]]
+    changed = _find_changed_numbers(old, new)
     number = changed[0] if len(changed) == 1 else 0
     is_option = number > 0 and _OPTION.fullmatch(new[number - 1]) and not _OPTION.fullmatch(new[number])
     return f"{new[number - 1]} {old[number]} -> {new[number]}" if is_option else None
@@ -75,10 +75,15 @@ def _find_changed_option(old: list[str], new: list[str]) -> str | None:
 
 def _find_changed_items(old: list[str], new: list[str]) -> list[str]:
     """Return the items that differ between two lists of the same length; none if there are many."""
-    changed = [number for number, item in enumerate(new) if len(old) == len(new) and item != old[number]]
+    changed = _find_changed_numbers(old, new)
     if len(changed) > _MAX_CHANGED_ITEMS:
         return []
     return [f"[{number}] {old[number]} -> {new[number]}" for number in changed]
+
+
+def _find_changed_numbers(old: list[str], new: list[str]) -> list[int]:
+    """Return the indexes of the items that differ between two lists of the same length; none for other lists."""
+    return [number for number, item in enumerate(new) if len(old) == len(new) and item != old[number]]
 
 
 def list_items(text: str) -> list[str]:

@@ -54,8 +54,7 @@ def find_simulator_reason(difference: Difference, versions: Versions, path: str 
         return _find_other_manager_reason(difference, versions, path)
     old, new = (text or "" for text in (difference.old, difference.new))
     old_simulator, new_simulator = (_SIMULATORS.get(text.partition("/")[0]) for text in (old, new))
-    paths = {path, *(file.new_path for file in versions.changed_files)}
-    if old_simulator == new_simulator or any(_names(versions.new, other, old) for other in paths):
+    if old_simulator == new_simulator or _is_kept(versions, path, old):
         return None
     if old_simulator is None:
         is_real = _HARDWARE.fullmatch(old) is not None and _SIMULATED.search(old) is None
@@ -78,17 +77,16 @@ def _find_other_manager_reason(difference: Difference, versions: Versions, path:
         return None
     if _CLASSIC_MANAGER.search(files[0]) is None or _NEW_MANAGER.search(files[1]) is None:
         return None
-    if any(
-        _names(versions.new, other, files[0]) for other in {path, *(file.new_path for file in versions.changed_files)}
-    ):
+    if _is_kept(versions, path, files[0]):
         return None
     return phrase("simulations that start the robot in {simulator} find no controllers", simulator=_CLASSIC)
 
 
-def _names(version: Version, path: str | None, text: str) -> bool:
-    """Return whether a description has a text outside of comments. False if there is no file."""
-    is_description = path is not None and path.endswith(DESCRIPTION_SUFFIXES)
-    return path is not None and is_description and text in without_comments(version.text(path), path)
+def _is_kept(versions: Versions, path: str, text: str) -> bool:
+    """Return whether a description, or another changed one, still has a text outside of comments."""
+    paths = {path, *(file.new_path for file in versions.changed_files if file.new_path is not None)}
+    descriptions = (other for other in paths if other.endswith(DESCRIPTION_SUFFIXES))
+    return any(text in without_comments(versions.new.text(other), other) for other in descriptions)
 
 
 def find_lost_manager_reason(difference: Difference, new: Iterable[Element], versions: Versions) -> Phrase | None:

@@ -10,12 +10,7 @@ from typing import TypeVar
 
 from linkwright.control.hardware.component import Hardware, hardware_class
 from linkwright.control.hardware.description import HardwareDescription
-from linkwright.control.hardware.interfaces import (
-    CommandInterface,
-    Interface,
-    Interfaces,
-    StateInterface,
-)
+from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
 from linkwright.control.hardware.replacement import ReplacementSystem
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState

@@ -49,7 +49,7 @@ def replace_import_aliases(tree: ast.Module) -> None:
 def _find_bound_names(nodes: Collection[ast.AST], ignored: Collection[int]) -> set[str]:
     """Return the names that statements define, without those of some imports.
 
-    The same class imported under its own name is no other definition.
+    An import of the same class under its own name does not count.
     """
     bound: set[str] = set()
     for node in nodes:

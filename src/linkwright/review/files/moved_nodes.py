@@ -34,14 +34,11 @@ def find_node_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -
     versions = pair.versions
     launch_file = _find_setting_file(pair, next(filter(None, nodes)), values)
     if launch_file is not None:
-        return phrase("{old} moved to {name}", old=name, name=launch_file)
+        return _describe_move(name, launch_file, [])
     for path in list_changed_files(pair):
         items = _compare_part(pair, name, values, path) if is_named_by_launch_file(versions.new, path) else None
         if items is not None:
-            text = phrase("{old} moved to {name}", old=name, name=path)
-            return (
-                phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES)) if items else text
-            )
+            return _describe_move(name, path, items)
     return None
 
 

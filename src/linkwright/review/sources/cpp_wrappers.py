@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.packages import enclosing_package
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.cpp_calls import Call, find_calls
 from linkwright.review.sources.cpp_helpers import KINDS_OF_NAMES, Helper, HelperUse, make_helpers, make_use
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments, find_closing_bracket
@@ -183,11 +184,20 @@ def read_sources_of_headers(path: Path, text: str) -> list[str]:
         return []
     stems = re.findall(r'^[ \t]*#[ \t]*include[ \t]*["<](?:[^">\n]*/)?(\w+)\.(?:hpp|hh|hxx|h)[">]', text, re.MULTILINE)
     suffixes = [suffix for suffix in CPP_SUFFIXES if suffix not in HEADER_SUFFIXES]
-    names = {f"{stem}{suffix}": None for stem in stems for suffix in suffixes}
-    below = sorted(file for file in (package[1] / "src").rglob("*") if file.name in names)
-    files = [*(path.parent / name for name in names), *below]
+    names = list(dict.fromkeys(f"{stem}{suffix}" for stem in stems for suffix in suffixes))
+    below = _list_files_by_name(package[1] / "src")
+    files = [*(path.parent / name for name in names), *sorted(file for name in names for file in below.get(name, ()))]
     return [
         blank_comments(file.read_text("utf-8", errors="replace"))
         for file in dict.fromkeys(files)
         if file != path and file.is_file() and not file.is_symlink() and file.stat().st_size <= _MAX_BYTES
     ]
+
+
+@cached_in_review(maxsize=16)
+def _list_files_by_name(folder: Path) -> Mapping[str, list[Path]]:
+    """Return the files below a folder by their names. All sources of a package search the same folder."""
+    files: dict[str, list[Path]] = {}
+    for file in folder.rglob("*"):
+        files.setdefault(file.name, []).append(file)
+    return files

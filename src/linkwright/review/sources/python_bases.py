@@ -14,15 +14,7 @@ from linkwright.review.sources.shared_constants import find_own_module, read_mod
 NODE_NAMES = frozenset(
     {
         *("add_on_set_parameters_callback", "add_post_set_parameters_callback", "add_pre_set_parameters_callback"),
-        *(
-            "PARAM_REL_TOL",
-            "add_waitable",
-            "assert_liveliness",
-            "clients",
-            "context",
-            "count_clients",
-            "count_publishers",
-        ),
+        *("add_waitable", "assert_liveliness", "clients", "context", "count_clients", "count_publishers"),
         *("count_services", "count_subscribers", "create_client", "create_guard_condition", "create_publisher"),
         *("create_rate", "create_service", "create_subscription", "create_timer", "declare_parameter"),
         *("declare_parameters", "default_callback_group", "describe_parameter", "describe_parameters"),

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import LinkwrightError, counted, phrase, quoted_names
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.files.moveit_names import make_uncontrolled_reason
 from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version, Versions
 
@@ -66,14 +67,8 @@ def find_lost_joints(versions: Versions, changed_files: Sequence[ChangedFile]) -
             for number, name in enumerate(joints):
                 if name in lost and added:
                     sentence = phrase("names the joint '{name}', which no group has any more", name=name)
-                    reason = counted(
-                        "MoveIt finds no controller for the joint {names}",
-                        "MoveIt finds no controller for the joints {names}",
-                        len(added),
-                        names=quoted_names(added),
-                    )
                     location = Location(path, number + 1, lines[number].index(name) + 1)
-                    yield path, Change(sentence, Effect.BREAKING, reason, location)
+                    yield path, Change(sentence, Effect.BREAKING, make_uncontrolled_reason(added), location)
 
 
 def _read_group_parts(version: Version, path: str) -> set[tuple[str, str]]:
