@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from linkwright.packages.readers.import_aliases import replace_import_aliases
+from linkwright.packages.readers.python_values import replace_import_aliases
 from tests.review.conftest import breaking, sentences, subject
 
 LAUNCH = """from launch import LaunchDescription

@@ -17,7 +17,6 @@ from functools import cached_property
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Any, Union
-from linkwright.packages.readers.import_aliases import replace_import_aliases
 
 
 class UnknownType(Enum):
@@ -70,6 +69,19 @@ PYTHON_COMPARISONS: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.NotIn: lambda item, items: item not in items,
 }
 """The functions that compare two values, by the operators of Python."""
+_ALIASED_MODULES = frozenset(
+    {
+        "ament_index_python",
+        "launch",
+        "launch_ros",
+        "launch_testing",
+        "launch_testing_ros",
+        "moveit_configs_utils",
+        "os",
+        "pathlib",
+    }
+)
+"""The packages whose classes and functions the readers of Python files know by their names."""
 _MAX_DEPTH = 40
 _JOIN_FUNCTIONS = frozenset(
     {"os.path.join", "path.join", "join", "Path", "PurePath", "pathlib.Path", "PathJoinSubstitution"}
@@ -359,3 +371,51 @@ def join_path(values: Sequence[Value]) -> Value:
         else:
             return UNKNOWN
     return path if isinstance(path, (str, SharePath)) else UNKNOWN
+
+
+def replace_import_aliases(tree: ast.Module) -> None:
+    """Change ``from launch_ros.actions import Node as N`` and each ``N`` to ``Node`` in a syntax tree.
+
+    Only names of modules that readers know are replaced. A name that the file also defines in another way stays, and
+    so does one whose own name the file uses for something else. Locations do not change.
+    """
+    nodes = list(ast.walk(tree))
+    aliases = [
+        alias
+        for node in nodes
+        if isinstance(node, ast.ImportFrom)
+        and not node.level
+        and (node.module or "").partition(".")[0] in _ALIASED_MODULES
+        for alias in node.names
+        if alias.asname is not None
+    ]
+    if not aliases:
+        return
+    bound = _find_bound_names(nodes, [id(alias) for alias in aliases])
+    replaced = {alias.asname: alias for alias in aliases if alias.asname not in bound and alias.name not in bound}
+    for alias in replaced.values():
+        alias.asname = None
+    names = {name: alias.name for name, alias in replaced.items()}
+    for node in nodes:
+        if isinstance(node, ast.Name):
+            node.id = names.get(node.id, node.id)
+
+
+def _find_bound_names(nodes: Sequence[ast.AST], ignored: Sequence[int]) -> set[str]:
+    """Return the names that statements define, without those of some imports.
+
+    An import of the same class under its own name does not count.
+    """
+    bound: set[str] = set()
+    for node in nodes:
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in _ALIASED_MODULES:
+            continue
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            bound |= {alias.asname or alias.name for alias in node.names if id(alias) not in ignored}
+        elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            bound.add(node.id)
+        elif isinstance(node, ast.arg):
+            bound.add(node.arg)
+        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            bound.add(node.name)
+    return bound
