@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.sources.cpp_conditions import Conditions, blank_disabled
+from linkwright.review.sources.cpp.preprocessor import Conditions, blank_disabled
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 

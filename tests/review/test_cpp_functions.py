@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.sources.cpp_functions import read_declared_functions
+from linkwright.review.sources.cpp.functions import read_declared_functions
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 

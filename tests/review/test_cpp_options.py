@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from linkwright.diagnostics import SourceText
-from linkwright.review.sources.cpp import read_cpp
+from linkwright.review.sources.cpp_names import read_cpp
 from linkwright.review.sources.names import Detail, NameKind, SourceNames
-from linkwright.review.sources.python import read_python
+from linkwright.review.sources.python_names import read_python
 from tests.review.conftest import breaking
 
 TCLAP = """#include <tclap/CmdLine.h>

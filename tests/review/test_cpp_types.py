@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type, normalize_type
+from linkwright.review.sources.cpp.types import accepts_type, can_use_result, is_same_type, normalize_type
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 

@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, Span, phrase
 from linkwright.review import open_versions
-from linkwright.review.folders import finding_without_folders
-from linkwright.review.unfixed_findings import drop_unfixed_findings
+from linkwright.review.findings.unfixed import drop_unfixed_findings
+from linkwright.review.texts.folders import finding_without_folders
 from tests.repositories import ARM, MACRO, PACKAGE_XML
 from tests.review.conftest import breaking
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.excerpts import differing_excerpts, shorten, shorten_middle
-from linkwright.review.list_changes import change_text
+from linkwright.review.texts.excerpts import differing_excerpts, shorten, shorten_middle
+from linkwright.review.texts.list_changes import change_text
 
 
 @pytest.mark.parametrize(

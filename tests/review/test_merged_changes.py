@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.merging import merge_changes, name_edit
 from linkwright.review.reports.sentences import format_cases, format_change
+from linkwright.review.texts.merging import merge_changes, name_edit
 from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
 

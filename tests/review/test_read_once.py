@@ -12,7 +12,10 @@ from linkwright.lint.affected import TextFiles
 from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
-from linkwright.review.sources import passed_variables, python_interface_uses, python_statements, reading, source_nodes
+from linkwright.review.sources import reading
+from linkwright.review.sources.interface_uses import python as python_interface_uses
+from linkwright.review.sources.python import passed_variables, source_nodes
+from linkwright.review.sources.statements import python as python_statements
 from linkwright.sdf.resources import ResourceFinder
 from tests.review.test_scene_images import make_stl
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph import Node
-from linkwright.review.sources.python_bases import NODE_NAMES
+from linkwright.review.sources.python.bases import NODE_NAMES
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking
 

@@ -199,7 +199,7 @@ def test_empty_values_are_shown(repository, compare):
 )
 def test_changes_that_images_cannot_show_have_none(repository, monkeypatch, old, new, count):
     if not count:
-        monkeypatch.setattr("linkwright.review.files.worlds.build_world_scenes", None)  # no mesh is read
+        monkeypatch.setattr("linkwright.review.files.worlds.comparing.build_world_scenes", None)  # no mesh is read
     repository.commit({PATH: MODEL})
     repository.write({PATH: replace_in_model(MODEL, (old, new))})
     versions = open_versions(repository.root, "HEAD")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.secrets import find_secrets_in_text
+from linkwright.review.texts.secrets import find_secrets_in_text
 from tests.review.conftest import sentences, subject
 
 LAUNCH = """from launch import LaunchDescription

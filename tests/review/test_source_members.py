@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from linkwright.review.sources.cpp_members import read_included_headers
+from linkwright.review.sources.cpp.members import read_included_headers
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 

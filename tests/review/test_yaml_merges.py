@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from tests.review.conftest import sentences, subject
 
 BASE = """base: &base

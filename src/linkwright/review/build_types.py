@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 

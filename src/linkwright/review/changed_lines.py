@@ -13,7 +13,7 @@ from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import count_shown
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.excerpts import differing_excerpts, shorten
+from linkwright.review.texts.excerpts import differing_excerpts, shorten
 from linkwright.review.versions import Version, Versions
 
 _SHELL_SUFFIXES = frozenset({".sh", ".bash", ".zsh"})

@@ -15,7 +15,7 @@ from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import MAX_INCLUDE_DEPTH, IncludedActions, IncludedFile
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.robots.unpaired_robots import read_unpaired_robot
 from linkwright.review.versions import Version, Versions
 

@@ -8,8 +8,8 @@ from pathlib import PurePosixPath
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_all_controllers, make_controllers_reason
-from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.files.parameters.names import find_all_controllers, make_controllers_reason
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from linkwright.review.versions import Version, Versions
 
 _PARAMETERS = re.compile(r"(?:.* )?parameters")

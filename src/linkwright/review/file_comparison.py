@@ -13,14 +13,14 @@ from linkwright.review.drawings.images import render_unpaired_robot
 from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
-from linkwright.review.files.generated_parameters import generates_code
-from linkwright.review.files.unbuilt_interfaces import is_unbuilt
-from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
-from linkwright.review.folders import without_folder
+from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
+from linkwright.review.files.parameters.generated import generates_code
+from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names
+from linkwright.review.texts.folders import without_folder
 from linkwright.review.users.unused_test_files import is_test_file, is_unused_test_file
 from linkwright.review.versions import Version, Versions
 from linkwright.sdf.text import parse_as_gazebo

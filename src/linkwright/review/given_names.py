@@ -11,9 +11,9 @@ from linkwright.diagnostics import Phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.breaking import frame_reason, name_reason
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.parameter_files import compare_parameter_files
-from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.files.parameters.comparing import compare_parameter_files
+from linkwright.review.files.parameters.names import find_node_name
+from linkwright.review.files.parameters.yaml_values import YamlValue
 from linkwright.review.launches.loaded_remappings import find_loaded_remappings
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 from linkwright.review.sources.parameter_defaults import SUM

@@ -10,9 +10,9 @@ from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts, FactKind, find_own_include_text
-from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
-from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
+from linkwright.review.files.build.cmake_files import CMAKE_FILE, read_cmake_facts
+from linkwright.review.files.build.facts import BuildFacts, FactKind, find_own_include_text
+from linkwright.review.files.build.setup_files import SETUP_FILE, read_setup_facts
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 

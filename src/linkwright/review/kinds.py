@@ -12,11 +12,11 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.arms.semantics import compare_semantics, semantic_contents
 from linkwright.review.files.behavior_trees import compare_behavior_trees, tree_contents
-from linkwright.review.files.build_contents import build_contents
-from linkwright.review.files.build_facts import BuildFacts
-from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
-from linkwright.review.files.dependency_lists import (
+from linkwright.review.files.build.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
+from linkwright.review.files.build.contents import build_contents
+from linkwright.review.files.build.dependency_lists import (
     REPOSITORY_SUFFIXES,
     REQUIREMENTS,
     compare_repositories,
@@ -24,14 +24,9 @@ from linkwright.review.files.dependency_lists import (
     repository_contents,
     requirement_contents,
 )
-from linkwright.review.files.gui_files import compare_gui_files, gui_contents
-from linkwright.review.files.interfaces import compare_interfaces, interface_contents
-from linkwright.review.files.manifests import compare_manifests, manifest_contents
-from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
-from linkwright.review.files.meshes import compare_meshes, mesh_contents
-from linkwright.review.files.model_configurations import MODEL_CONFIGURATION, compare_model_configurations
-from linkwright.review.files.parameter_files import parameter_contents
-from linkwright.review.files.python_settings import (
+from linkwright.review.files.build.facts import BuildFacts
+from linkwright.review.files.build.manifests import compare_manifests, manifest_contents
+from linkwright.review.files.build.python_settings import (
     PYPROJECT,
     SETUP_CFG,
     compare_pyproject_files,
@@ -39,11 +34,16 @@ from linkwright.review.files.python_settings import (
     read_pyproject,
     read_setup_cfg,
 )
+from linkwright.review.files.build.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
+from linkwright.review.files.gui_files import compare_gui_files, gui_contents
+from linkwright.review.files.interfaces import compare_interfaces, interface_contents
+from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
+from linkwright.review.files.meshes import compare_meshes, mesh_contents
+from linkwright.review.files.parameters.comparing import parameter_contents
 from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
-from linkwright.review.files.semantics import compare_semantics, semantic_contents
-from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
-from linkwright.review.files.templates import TEMPLATE_SUFFIXES
-from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
+from linkwright.review.files.worlds.comparing import compare_worlds, is_model, world_contents
+from linkwright.review.files.worlds.model_configurations import MODEL_CONFIGURATION, compare_model_configurations
+from linkwright.review.files.worlds.templates import TEMPLATE_SUFFIXES
 from linkwright.review.given_names import compare_parameters_with_sources
 from linkwright.review.launches.contents import launch_contents, started_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests

@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changed_lines import compare_lines, list_commands
-from linkwright.review.renamed_packages import find_moved_files
+from linkwright.review.renames.packages import find_moved_files
 from linkwright.review.versions import Version, Versions
 
 _HEAD_BYTES = 4096

@@ -10,8 +10,8 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.breaking import namespace_reason
-from linkwright.review.element_values import format_values
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
+from linkwright.review.texts.element_values import format_values
 from linkwright.xmltree import Element
 
 _DEFAULT_TOPICS = {

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.files.installed_files import make_uninstalled_change
+from linkwright.review.files.build.installed_files import make_uninstalled_change
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
 
 _DECLARED = (NameKind.CLASS.plural, NameKind.FUNCTION.plural, NameKind.MEMBER.plural)

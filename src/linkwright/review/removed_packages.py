@@ -12,7 +12,7 @@ from linkwright.diagnostics.phrase import listed_items
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.files.build_facts import FactKind
+from linkwright.review.files.build.facts import FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.sources.names import NameKind
 from linkwright.review.users.left_packages import list_package_users

@@ -9,10 +9,10 @@ from pathlib import PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.worlds import read_world_models
-from linkwright.review.files.yaml_values import read_yaml_text, read_yaml_values
+from linkwright.review.files.parameters.yaml_values import read_yaml_text, read_yaml_values
+from linkwright.review.files.worlds.comparing import read_world_models
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.versions import Version, Versions
 
 _WORLD_SUFFIXES = (".world", ".sdf")

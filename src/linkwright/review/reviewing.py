@@ -27,23 +27,24 @@ from linkwright.review.changes import (
     Subject,
     SubjectKind,
 )
-from linkwright.review.failing_findings import mark_failures
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.behavior_tree_files import is_tree_file
-from linkwright.review.files.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
-from linkwright.review.files.dependency_lists import is_repository_list
+from linkwright.review.files.build.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
+from linkwright.review.files.build.dependency_lists import is_repository_list
+from linkwright.review.files.build.rosbuild_manifests import compare_rosbuild_manifests
 from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import compare_plugin_files
-from linkwright.review.files.rosbuild_manifests import compare_rosbuild_manifests
-from linkwright.review.files.templates import is_template
-from linkwright.review.files.worlds import is_other_world
-from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
-from linkwright.review.folders import review_without_folder
-from linkwright.review.hidden_findings import drop_hidden_findings
+from linkwright.review.files.worlds.comparing import is_other_world
+from linkwright.review.files.worlds.templates import is_template
+from linkwright.review.findings.comparing import Findings, compare_findings, find_findings, find_findings_singly
+from linkwright.review.findings.failing import mark_failures
+from linkwright.review.findings.hidden import drop_hidden_findings
+from linkwright.review.findings.renamed import drop_renamed_findings
+from linkwright.review.findings.unfixed import drop_unfixed_findings
 from linkwright.review.kinds import (
     BEHAVIOR_TREE,
     GUI,
@@ -65,9 +66,8 @@ from linkwright.review.launch_paths import (
     is_launch_yaml,
 )
 from linkwright.review.launches.formats import join_format_changes
-from linkwright.review.launches.helpers import imports_actions
-from linkwright.review.launches.missing_programs import drop_told_findings
-from linkwright.review.moved_topics import merge_moved_topics
+from linkwright.review.launches.programs.missing import drop_told_findings
+from linkwright.review.launches.python.helpers import imports_actions
 from linkwright.review.notes import (
     group_equal_problems,
     group_unexpanded,
@@ -88,17 +88,17 @@ from linkwright.review.removed_packages import (
     merge_removed_packages,
 )
 from linkwright.review.removed_programs import merge_removed_options
-from linkwright.review.renamed_findings import drop_renamed_findings
-from linkwright.review.renamed_folders import merge_renamed_folders
-from linkwright.review.renamed_packages import find_renamed_packages, match_moved_files, remove_consequences
+from linkwright.review.renames.folders import merge_renamed_folders
+from linkwright.review.renames.moved_topics import merge_moved_topics
+from linkwright.review.renames.packages import find_renamed_packages, match_moved_files, remove_consequences
 from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
-from linkwright.review.secrets import hide_secrets
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.texts.folders import review_without_folder
+from linkwright.review.texts.secrets import hide_secrets
 from linkwright.review.unchanged_contents import keeps_contents
 from linkwright.review.undeclared_packages import mark_undeclared
-from linkwright.review.unfixed_findings import drop_unfixed_findings
 from linkwright.review.users.followed_joints import relieve_followed_joints
 from linkwright.review.users.ignored_packages import relieve_ignored_packages
 from linkwright.review.users.left_collision_pairs import find_left_collision_pairs

@@ -8,10 +8,10 @@ from pathlib import PurePosixPath
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.comments import without_comments
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.plugins import find_plugins, is_removed
-from linkwright.review.replaced_plugins import PluginReplacement
+from linkwright.review.renames.replaced_plugins import PluginReplacement
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES
 from linkwright.review.versions import Version, Versions
 from linkwright.xmltree import Element

@@ -12,11 +12,11 @@ import yaml
 from linkwright.diagnostics import LinkwrightError
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changed_lines import split_content_lines
-from linkwright.review.comments import XML_SUFFIXES
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
-from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
-from linkwright.review.renamed_packages import find_renamed_packages
+from linkwright.review.files.build.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
+from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_text
+from linkwright.review.renames.packages import find_renamed_packages
+from linkwright.review.texts.comments import XML_SUFFIXES
 from linkwright.review.versions import Versions
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element

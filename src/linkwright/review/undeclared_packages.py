@@ -13,7 +13,7 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
 from linkwright.review.launch_paths import find_launch_files
-from linkwright.review.launches.missing_programs import uses_package
+from linkwright.review.launches.programs.missing import uses_package
 from linkwright.review.required_packages import is_declared
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.used_packages import is_python_source

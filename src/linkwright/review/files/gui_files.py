@@ -11,7 +11,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import change_text
+from linkwright.review.texts.list_changes import change_text
 from linkwright.review.versions import Version
 from linkwright.xmltree import Element, parse
 

@@ -17,9 +17,9 @@ from linkwright.packages.manifest import ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.containing_interfaces import find_containing_interfaces
 from linkwright.review.files.renamed_fields import find_renamed_constants, find_renamed_fields
-from linkwright.review.files.unbuilt_interfaces import is_unbuilt
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 

@@ -14,7 +14,7 @@ from linkwright.navigation.maps.images import read_image
 from linkwright.navigation.maps.map_yaml import MapYaml, read_map_yaml
 from linkwright.review.changes import Figure
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import change_text
+from linkwright.review.texts.list_changes import change_text
 from linkwright.review.versions import Version
 
 IMAGE_SUFFIXES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif")

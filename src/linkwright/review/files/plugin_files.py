@@ -12,7 +12,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.lenient_xml import read_lenient_root
-from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.renames.packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 
 _ROOTS = frozenset({"library", "class_libraries"})

@@ -13,7 +13,7 @@ from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.yaml_values import compose_yaml, read_yaml_values
+from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_values
 from linkwright.review.versions import Version
 
 _MANAGER = "Visualization Manager"

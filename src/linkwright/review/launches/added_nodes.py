@@ -17,8 +17,8 @@ from linkwright.review.launches.include_trees import IncludeTree, find_moved_rem
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.name_effects import find_remapping_reason
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.package_lookups import looks_up_package
-from linkwright.review.launches.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.programs.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.python.package_lookups import looks_up_package
 from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.sources.names import PYTHON_SUFFIX
 

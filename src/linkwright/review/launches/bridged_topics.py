@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase
 from linkwright.review.breaking import names_reason
-from linkwright.review.files.bridges import TRANSFORM_TOPICS, explain_lost_topic
+from linkwright.review.files.parameters.bridges import TRANSFORM_TOPICS, explain_lost_topic
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
 

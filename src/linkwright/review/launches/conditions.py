@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 
 from linkwright.packages.readers.python_values import parse_python_expression
-from linkwright.review.list_changes import EMPTY
+from linkwright.review.texts.list_changes import EMPTY
 
 _SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
 _EVAL_SUBSTITUTION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)

@@ -13,13 +13,13 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason, transform_reason
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.files.parameter_names import (
+from linkwright.review.files.parameters.names import (
     find_switch_reason,
     find_type_reason,
     offers_frame,
     switches_transform,
 )
-from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
+from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.argument_uses import had_action
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.conditions import evaluate_condition, find_added_terms, find_reversed_argument
@@ -48,12 +48,12 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.parameter_types import accepts_type
-from linkwright.review.launches.silent_programs import offers_no_names
+from linkwright.review.launches.programs.silent import offers_no_names
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group, is_unconfigured
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
 from linkwright.review.launches.topic_tools import find_forwarding_reason
-from linkwright.review.list_changes import list_items
+from linkwright.review.texts.list_changes import list_items
 
 _USER_INTERFACE_PROGRAM = re.compile(
     r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$"

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.caching import cached_in_review
-from linkwright.review.comments import without_comments
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launch_paths import is_launch_file
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.versions import Version
 
 _SEARCHED_SUFFIXES = (".launch", ".xml", ".py", ".yaml", ".yml", ".xacro", ".urdf", ".cpp", ".hpp", ".h", ".c")

@@ -12,8 +12,8 @@ from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.launches.included import MAX_INCLUDE_DEPTH, IncludedActions
-from linkwright.review.launches.missing_programs import find_missing_file, lacks_executable, lacks_program
 from linkwright.review.launches.outlines import CONDITION, FAILURES, Entry, LaunchOutline
+from linkwright.review.launches.programs.missing import find_missing_file, lacks_executable, lacks_program
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import read_source_names, try_read_source

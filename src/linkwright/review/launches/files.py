@@ -15,19 +15,19 @@ from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
-from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason, may_be_offered
-from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
+from linkwright.review.launches.arguments.fixed import report_fixed_arguments
+from linkwright.review.launches.arguments.kinds import report_changed_kinds
+from linkwright.review.launches.arguments.repeated import report_repeated_arguments
+from linkwright.review.launches.arguments.undeclared import find_new_undeclared_arguments, report_undeclared_arguments
+from linkwright.review.launches.arguments.unused import report_unused_arguments
 from linkwright.review.launches.bridged_topics import explain_lost_topics
-from linkwright.review.launches.builders import separate_builders
 from linkwright.review.launches.effects import explain_argument_removal, find_removal_reason, is_made_by_default
 from linkwright.review.launches.environment_readers import explain_removed_reading
 from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
-from linkwright.review.launches.fixed_arguments import report_fixed_arguments
-from linkwright.review.launches.imports import compare_imports
 from linkwright.review.launches.include_trees import (
     IncludeTree,
     find_moved_remapping,
@@ -43,9 +43,6 @@ from linkwright.review.launches.included import (
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries, start_same_program
-from linkwright.review.launches.missing_programs import find_missing_file, lacks_included_file, lacks_program
-from linkwright.review.launches.object_texts import report_object_texts
-from linkwright.review.launches.other_code import drop_common_parts, outside
 from linkwright.review.launches.outlines import (
     FAILURES,
     PASSES_ALL_ARGUMENTS,
@@ -56,18 +53,23 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     imply,
 )
-from linkwright.review.launches.python_tests import report_object_tests
+from linkwright.review.launches.programs.missing import find_missing_file, lacks_included_file, lacks_program
+from linkwright.review.launches.programs.renamed import find_renamed_programs
+from linkwright.review.launches.python.builders import separate_builders
+from linkwright.review.launches.python.conditions import report_object_tests
+from linkwright.review.launches.python.imports import compare_imports
+from linkwright.review.launches.python.object_texts import report_object_texts
+from linkwright.review.launches.python.other_code import drop_common_parts, outside
+from linkwright.review.launches.python.undefined import report_undefined_names
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.removed_together import RemovedArguments
 from linkwright.review.launches.renamed_code import rename_packages_in_code
-from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import (
     find_renamed_names,
     rename_commands,
     rename_in_entry,
     rename_in_outline,
 )
-from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.simple_launch import report_declared_arguments
@@ -81,10 +83,8 @@ from linkwright.review.launches.titles import (
     join_titles,
 )
 from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
-from linkwright.review.launches.undeclared_arguments import find_new_undeclared_arguments, report_undeclared_arguments
-from linkwright.review.launches.undefined import report_undefined_names
-from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.texts.excerpts import differing_excerpts, shorten_middle
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""

@@ -21,7 +21,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 
 _MAX_SEARCHED_FILES = 60
 

@@ -12,11 +12,11 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.files.parameters.names import find_node_name
+from linkwright.review.files.parameters.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
-from linkwright.review.launches.programs import list_nodes, read_launch_files, try_read_outline
+from linkwright.review.launches.programs.sources import list_nodes, read_launch_files, try_read_outline
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

@@ -14,10 +14,10 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.files.parameters.names import find_node_name
+from linkwright.review.files.parameters.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.launches.outlines import PARAMETER, PROGRAM_KINDS, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.programs import SourcePrograms, list_nodes, read_launch_files
+from linkwright.review.launches.programs.sources import SourcePrograms, list_nodes, read_launch_files
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, NameKind, SourceNames
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

@@ -8,10 +8,10 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.files.plugin_packages import PluginPackages, find_plugin_package
+from linkwright.review.files.parameters.plugin_packages import PluginPackages, find_plugin_package
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import PARAMETER, SERVER_PARAMETER, Entry, LaunchOutline
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 
 from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.programs import list_nodes, read_launch_files
+from linkwright.review.launches.programs.sources import list_nodes, read_launch_files
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version
 

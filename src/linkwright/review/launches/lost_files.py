@@ -9,14 +9,14 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.files.parameters.names import find_node_name
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from linkwright.review.launches.conditional_settings import SettingPair
-from linkwright.review.launches.default_names import find_default_name, find_package_folders
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline, without_condition
-from linkwright.review.list_changes import nested_list_items
+from linkwright.review.launches.programs.default_names import find_default_name, find_package_folders
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.texts.list_changes import nested_list_items
 from linkwright.review.versions import Version
 
 _FILES = "parameters"

@@ -11,8 +11,7 @@ import yaml
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.review.file_pair import LimitError
-from linkwright.review.files.yaml_values import compose_yaml
-from linkwright.review.launches.environment import find_markup_readings
+from linkwright.review.files.parameters.yaml_values import compose_yaml
 from linkwright.review.launches.outlines import (
     ALLOW_SUBSTITUTIONS,
     CONDITION,
@@ -33,6 +32,7 @@ from linkwright.review.launches.outlines import (
     Scope,
     with_condition,
 )
+from linkwright.review.launches.python.environment import find_markup_readings
 from linkwright.review.launches.ros1_parameters import (
     deletes_parameters,
     find_deleted_name,

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_node_name
-from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.files.parameters.names import find_node_name
+from linkwright.review.files.parameters.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.launches.conditional_settings import SettingPair
 from linkwright.review.launches.outlines import PARAMETER, LaunchOutline
 from linkwright.review.versions import Version

@@ -9,7 +9,7 @@ from linkwright.review.breaking import name_reason, names_reason, possible_name_
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
 from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.programs.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.taken_names import is_taken_over
 
 _DESCRIPTION = ("robot_state_publisher/robot_state_publisher", "robot_description")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.review.files.declared_types import declare_type
-from linkwright.review.files.yaml_values import YamlType, YamlValue
-from linkwright.review.launches.default_names import find_package_folders
+from linkwright.review.files.parameters.declared_types import declare_type
+from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue
 from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.programs.default_names import find_package_folders
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
 
 _SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)

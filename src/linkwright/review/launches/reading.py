@@ -8,15 +8,15 @@ from pathlib import Path
 from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.dictionary_classes import expand_dictionary_classes
-from linkwright.review.launches.environment import find_python_readings
-from linkwright.review.launches.helpers import HelperFunctions
-from linkwright.review.launches.imported_values import assign_imported_values, uses_unknown_actions
 from linkwright.review.launches.markup import read_markup_outline, read_yaml_tags, tag_from_xml
-from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
-from linkwright.review.launches.python import read_python_outline
-from linkwright.review.launches.python_actions import ACTIONS
+from linkwright.review.launches.python.actions import ACTIONS
+from linkwright.review.launches.python.dictionary_classes import expand_dictionary_classes
+from linkwright.review.launches.python.environment import find_python_readings
+from linkwright.review.launches.python.helpers import HelperFunctions
+from linkwright.review.launches.python.imported_values import assign_imported_values, uses_unknown_actions
+from linkwright.review.launches.python.names import LaunchPythonFile
+from linkwright.review.launches.python.outlines import read_python_outline
 from linkwright.xacro.cache import read_document
 
 _MAX_OUTLINES = 512

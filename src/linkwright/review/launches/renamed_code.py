@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from linkwright.review.launches.outlines import LaunchOutline
-from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.renames.packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Versions
 
 

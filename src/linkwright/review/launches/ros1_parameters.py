@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import yaml
 
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import YamlValue, collect_values, compose_yaml
+from linkwright.review.files.parameters.yaml_values import YamlValue, collect_values, compose_yaml
 
 _DEFAULT_COMMAND = "load"
 _NULL = "null"

@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason, names_reason, possible_name_reason, possible_names_reason
 from linkwright.review.changes import MAX_NAMES, Location
-from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.parameter_names import offers_frame
+from linkwright.review.files.parameters.names import offers_frame
+from linkwright.review.launches.arguments.fixed import fix_value
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.conditions import evaluate_condition
-from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import (
     explain_argument_removal,
     find_setting_reason,
@@ -22,7 +21,6 @@ from linkwright.review.launches.effects import (
     is_other_joint_state_publisher_started,
 )
 from linkwright.review.launches.environment_readers import explain_removed_reading
-from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import STARTING_KINDS, IncludedActions, Program, find_including_files
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
@@ -41,13 +39,15 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
 )
+from linkwright.review.launches.programs.default_names import find_default_name
 from linkwright.review.launches.renames import rename_in_text
 from linkwright.review.launches.simulated_hardware import find_clock_reason
 from linkwright.review.launches.static_transforms import SAME_TRANSFORM, compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
 from linkwright.review.launches.transforms import gets_transform, starts_robot_with_link
-from linkwright.review.list_changes import change_text
-from linkwright.review.merging import name_edit
+from linkwright.review.texts.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
+from linkwright.review.texts.list_changes import change_text
+from linkwright.review.texts.merging import name_edit
 
 _MIN_GROUP_SIZE = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import PurePosixPath
 
-from linkwright.review.files.spawned_models import SpawnedModel
+from linkwright.review.files.worlds.spawned_models import SpawnedModel
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.outlines import CONDITION
-from linkwright.review.launches.programs import list_nodes, try_read_outline
+from linkwright.review.launches.programs.sources import list_nodes, try_read_outline
 from linkwright.review.versions import Version, Versions
 
 _NAME_OPTIONS: Mapping[str, str] = {

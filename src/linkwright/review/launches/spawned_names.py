@@ -10,8 +10,8 @@ from pathlib import Path
 from linkwright.packages.manifest import SKIPPED_FOLDERS
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_all_controllers
-from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.files.parameters.names import find_all_controllers
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _SUFFIXES = (".yaml", ".yml")

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from linkwright.review.launches.default_names import find_script
 from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.programs.default_names import find_script
 
 
 def find_starting_node(include: Entry, added: Sequence[Entry], root: Path) -> Entry | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.geometry.single import Quaternion, normalized, quaternion_from_rpy, rpy_from_quaternion
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS
-from linkwright.review.list_changes import split_command
+from linkwright.review.texts.list_changes import split_command
 
 _TRANSLATION = ("x", "y", "z")
 _ANGLES = ("yaw", "pitch", "roll")

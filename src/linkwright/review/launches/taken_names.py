@@ -11,7 +11,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.sides import Side, find_side
+from linkwright.review.launches.programs.sides import Side, find_side
 
 
 def is_taken_over(entry: Entry, name: str, old: LaunchOutline, new: LaunchOutline) -> bool:

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.excerpts import shorten_middle
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import (
     BUILDER,
@@ -27,7 +26,8 @@ from linkwright.review.launches.outlines import (
     extract_condition,
     without_condition,
 )
-from linkwright.review.list_changes import EMPTY, list_items, nested_list_items, split_command
+from linkwright.review.texts.excerpts import shorten_middle
+from linkwright.review.texts.list_changes import EMPTY, list_items, nested_list_items, split_command
 
 _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline
-from linkwright.review.list_changes import split_command
+from linkwright.review.texts.list_changes import split_command
 
 _PACKAGE = "topic_tools/"
 _THROTTLE_NUMBER_COUNTS = {"messages": 1, "bytes": 2}

@@ -10,9 +10,9 @@ from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import IncludedActions, find_including_files
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names
-from linkwright.review.list_changes import split_command
+from linkwright.review.texts.list_changes import split_command
 from linkwright.review.versions import Version, Versions
 
 _ANY_FRAME_PROGRAM = re.compile(r"robot_state_publisher/|state_publisher/|apriltag\w*/|aruco\w*/|mocap\w*/|vrpn\w*/")

@@ -21,12 +21,8 @@ from linkwright.review.breaking import (
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.controller_files import find_controller_file_reason
-from linkwright.review.element_values import format_values
-from linkwright.review.excerpts import differing_excerpts
-from linkwright.review.files.semantics import find_removal_reason
+from linkwright.review.files.arms.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
-from linkwright.review.merged_reasons import merge_reasons
-from linkwright.review.merging import name_edit
 from linkwright.review.parts.argument_scopes import takes_argument, takes_parameter
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.default_conditions import find_missing_part_reason, find_missing_plugin_reason
@@ -42,6 +38,10 @@ from linkwright.review.parts.properties import find_distinguishing_conditions
 from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
 from linkwright.review.simulators import find_simulator_reason
+from linkwright.review.texts.element_values import format_values
+from linkwright.review.texts.excerpts import differing_excerpts
+from linkwright.review.texts.merged_reasons import merge_reasons
+from linkwright.review.texts.merging import name_edit
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80

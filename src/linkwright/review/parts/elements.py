@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.descriptions.comparison import GAZEBO, find_remapped_name
-from linkwright.review.element_values import format_own_content
 from linkwright.review.parts.name_substitution import CALL, NameSubstitution
 from linkwright.review.parts.outline import STATEMENTS, Item, iterate_items, join_items
+from linkwright.review.texts.element_values import format_own_content
 from linkwright.xmltree import Element
 
 CONDITION_SEPARATOR = " and "

@@ -7,8 +7,6 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted_names
-from linkwright.review.list_changes import change_text
-from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
 from linkwright.review.parts.default_values import collect_new_values
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
@@ -17,6 +15,8 @@ from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
 from linkwright.review.parts.undefined_names import find_lost_definitions, find_undefined_names, find_unmet_condition
 from linkwright.review.parts.unused_arguments import is_unused_argument
+from linkwright.review.texts.list_changes import change_text
+from linkwright.review.texts.merging import name_edit
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.merging import name_edit
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.name_substitution import iterate_properties
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.texts.merging import name_edit
 from linkwright.xmltree import Element
 
 _DEFINITIONS = (PROPERTY, INCLUDE, "material")

@@ -9,7 +9,6 @@ from html import escape
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
-from linkwright.review.excerpts import shorten
 from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.path_plots import PLOT_STYLE, draw_path_plot
 from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
@@ -34,6 +33,7 @@ from linkwright.review.reports.sentences import (
     get_path_state,
     list_other_files,
 )
+from linkwright.review.texts.excerpts import shorten
 
 _ImageKey = tuple[tuple[str, bytes, bytes], ...]
 """The name of each view of a file, with the image of the old and of the new version."""

@@ -10,7 +10,6 @@ from linkwright.diagnostics import Diagnostic, Phrase, counted, joined, phrase
 from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject
-from linkwright.review.excerpts import differing_excerpts, shorten
 from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.sections import (
     Section,
@@ -31,6 +30,7 @@ from linkwright.review.reports.sentences import (
     get_path_state,
     list_other_files,
 )
+from linkwright.review.texts.excerpts import differing_excerpts, shorten
 
 MARKER = "<!-- linkwright review -->"
 """The first line, by which a program finds the comment to update."""

@@ -10,8 +10,8 @@ from itertools import product
 
 from linkwright.diagnostics import Phrase, counted, joined, phrase
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
-from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.reports.sentences import Repeat, format_change
+from linkwright.review.texts.merged_reasons import merge_reasons
 
 _ORDER = {kind: number for number, kind in enumerate(SubjectKind)}
 _MIN_REPEATED = 2

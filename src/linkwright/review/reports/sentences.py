@@ -8,9 +8,9 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted, quoted_names
 from linkwright.review.argument_sets import ARGUMENT, find_distinct_arguments
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject, SubjectKind, ViewImages
-from linkwright.review.excerpts import shorten
-from linkwright.review.numbered_names import find_runs
 from linkwright.review.other_files import group_files
+from linkwright.review.texts.excerpts import shorten
+from linkwright.review.texts.numbered_names import find_runs
 
 _MAX_NAMES = 24
 """The maximum number of other links or joints that a line names."""

@@ -9,7 +9,6 @@ from linkwright.diagnostics.phrase import count_shown
 from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
-from linkwright.review.excerpts import shorten
 from linkwright.review.reports.finding_groups import group_findings
 from linkwright.review.reports.sections import Section, divide_report, format_summary
 from linkwright.review.reports.sentences import (
@@ -21,6 +20,7 @@ from linkwright.review.reports.sentences import (
     get_path_state,
     list_other_files,
 )
+from linkwright.review.texts.excerpts import shorten
 
 _MAX_OTHER_FILES = 20
 """The maximum number of files that are listed although they were not compared."""

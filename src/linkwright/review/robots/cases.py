@@ -15,7 +15,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
-from linkwright.review.folders import without_folder
+from linkwright.review.texts.folders import without_folder
 from linkwright.review.parts.outline import PROPERTY, try_read_outline
 from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
 from linkwright.review.robots.unpaired_robots import format_robot

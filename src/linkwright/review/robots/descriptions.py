@@ -16,16 +16,16 @@ from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
 from linkwright.review.drawings.scenes import build_robot_scene
-from linkwright.review.element_values import format_own_content
+from linkwright.review.texts.element_values import format_own_content
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.semantics import find_disabled_collisions
+from linkwright.review.files.arms.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.left_names import find_left_names, is_searched_property
-from linkwright.review.merged_reasons import merge_reasons
-from linkwright.review.merging import merge_changes
-from linkwright.review.motions import add_motion, compute_angle
+from linkwright.review.texts.merged_reasons import merge_reasons
+from linkwright.review.texts.merging import merge_changes
+from linkwright.review.texts.motions import add_motion, compute_angle
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.plugins import (
@@ -37,8 +37,8 @@ from linkwright.review.plugins import (
     is_still_offered,
     names_same_topic,
 )
-from linkwright.review.renamed_sensors import SensorReplacement, merge_renamed_sensors
-from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
+from linkwright.review.renames.sensors import SensorReplacement, merge_renamed_sensors
+from linkwright.review.renames.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.argument_names import ArgumentNames, find_argument_names
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases

@@ -10,7 +10,7 @@ from linkwright.descriptions.comparison import Comparison, Difference, sentence
 from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.frames import SharedFrames
-from linkwright.review.motions import add_motion
+from linkwright.review.texts.motions import add_motion
 from linkwright.urdf import Robot
 
 

@@ -8,7 +8,7 @@ from linkwright.descriptions import Description, examine
 from linkwright.diagnostics import LinkwrightError
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.semantics import compare_roots
+from linkwright.review.files.arms.semantics import compare_roots
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.robots.cases import find_fault
 from linkwright.review.versions import Version

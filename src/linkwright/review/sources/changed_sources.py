@@ -10,13 +10,13 @@ from pathlib import PurePosixPath
 from types import MappingProxyType
 
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
-from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
-from linkwright.review.sources.moved_code import MovedCode, find_moved_code, without_functions
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
-from linkwright.review.sources.renamed_words import find_renamed_words
 from linkwright.review.sources.separate_programs import are_in_separate_programs
+from linkwright.review.sources.statements.code import Code, read_code
+from linkwright.review.sources.statements.moved_code import MovedCode, find_moved_code, without_functions
+from linkwright.review.sources.statements.renamed_words import find_renamed_words
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
 from linkwright.review.versions import Version

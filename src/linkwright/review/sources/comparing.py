@@ -9,14 +9,14 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.breaking import names_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
-from linkwright.review.renamed_packages import find_renamed_packages
+from linkwright.review.renames.packages import find_renamed_packages
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
 from linkwright.review.sources.conditions import ConditionChange, compare_conditions
-from linkwright.review.sources.cpp_calls import GRAPH_KINDS
-from linkwright.review.sources.cpp_members import read_included_headers
-from linkwright.review.sources.cpp_text import blank_comments
-from linkwright.review.sources.default_arguments import find_default_argument
+from linkwright.review.sources.cpp.calls import GRAPH_KINDS
+from linkwright.review.sources.cpp.default_arguments import find_default_argument
+from linkwright.review.sources.cpp.members import read_included_headers
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
@@ -27,13 +27,6 @@ from linkwright.review.sources.details import (
     format_name,
     format_names,
     format_rename,
-)
-from linkwright.review.sources.frame_changes import drop_told_frames
-from linkwright.review.sources.function_changes import (
-    NameChange,
-    find_field_reason,
-    find_ignored_reason,
-    merge_function_changes,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given
 from linkwright.review.sources.hardware_interfaces import find_description_without
@@ -57,9 +50,6 @@ from linkwright.review.sources.other_nodes import (
     has_only_in_other_nodes,
     is_new_in_plugin,
 )
-from linkwright.review.sources.package_imports import (
-    is_installed_package,
-)
 from linkwright.review.sources.paired_names import PairedNames
 from linkwright.review.sources.pairing import (
     compute_similarity,
@@ -71,6 +61,10 @@ from linkwright.review.sources.pairing import (
 )
 from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
+from linkwright.review.sources.python.package_imports import (
+    is_installed_package,
+)
+from linkwright.review.sources.python.unreachable_modules import is_unreachable
 from linkwright.review.sources.reasons import (
     find_message_frame_reason,
     find_removal_reason,
@@ -79,10 +73,16 @@ from linkwright.review.sources.reasons import (
 )
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
+from linkwright.review.sources.statements.frame_changes import drop_told_frames
+from linkwright.review.sources.statements.function_changes import (
+    NameChange,
+    find_field_reason,
+    find_ignored_reason,
+    merge_function_changes,
+)
+from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
 from linkwright.review.sources.unchanged_sources import make_user_reason
-from linkwright.review.sources.unmet_conditions import find_unmet_parameter
-from linkwright.review.sources.unreachable_modules import is_unreachable
 from linkwright.review.versions import Versions
 
 _MAIN = "main"

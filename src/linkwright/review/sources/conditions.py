@@ -10,7 +10,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.review.sources.cpp_conditions import blank_repeated_braces
+from linkwright.review.sources.cpp.preprocessor import blank_repeated_braces
 from linkwright.review.sources.names import ConditionalLines, NameKind, SourceNames
 
 _KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION, NameKind.PARAMETER)

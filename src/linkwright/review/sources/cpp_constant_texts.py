@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
-from linkwright.review.sources.cpp_text_functions import TextFunctions
-from linkwright.review.sources.cpp_values import (
+from linkwright.review.sources.cpp.text_functions import TextFunctions
+from linkwright.review.sources.cpp.values import (
     TEXT,
     VARIABLE,
     InitialValues,

@@ -9,12 +9,12 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted
 from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.list_changes import nested_list_items
-from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
-from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
+from linkwright.review.sources.cpp.types import accepts_type, can_use_result, is_convertible, is_same_type
+from linkwright.review.sources.cpp.variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
+from linkwright.review.sources.python.signatures import NOTHING, parse_signature
 from linkwright.review.sources.qos import find_depth, find_qos_reason, list_policies, normalize_qos
-from linkwright.review.sources.signatures import NOTHING, parse_signature
+from linkwright.review.texts.list_changes import nested_list_items
 
 _MIN_KEPT_ARGUMENTS = 6
 """The minimum number of arguments in both versions of a list of which only the others are shown."""

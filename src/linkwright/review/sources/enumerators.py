@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted_names
 from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.cpp_functions import PUBLIC, read_scopes
+from linkwright.review.sources.cpp.functions import PUBLIC, read_scopes
 from linkwright.review.sources.namespaces import HeaderChange
 
 _ENUMERATION = re.compile(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterator
 
-from linkwright.review.comments import without_comments
-from linkwright.review.sources.cpp_text import find_arguments
+from linkwright.review.sources.cpp.text import find_arguments
 from linkwright.review.sources.names import FoundName, NameKind
 from linkwright.review.sources.parameter_defaults import split_sum
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.versions import Version
 
 NAME_PART, NUMBER_PART, UNKNOWN_PART = "<name>", "<number>", "<...>"

@@ -7,11 +7,11 @@ from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
 from linkwright.review.changes import Change
-from linkwright.review.merged_reasons import merge_reasons
-from linkwright.review.merging import name_edit
-from linkwright.review.name_words import split_name
 from linkwright.review.sources.details import is_rename
 from linkwright.review.sources.names import NameKind
+from linkwright.review.texts.merged_reasons import merge_reasons
+from linkwright.review.texts.merging import name_edit
+from linkwright.review.texts.name_words import split_name
 
 _SEPARATE_KINDS = tuple(
     str(kind.title) for kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME, NameKind.FRAME_LOOKUP, NameKind.NODE)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.breaking import quote_first
-from linkwright.review.files.build_facts import list_names
+from linkwright.review.files.build.facts import list_names
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceNames
 from linkwright.review.versions import Version
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.review.sources.callbacks import pair_by_callback
-from linkwright.review.sources.cpp_members import has_class
+from linkwright.review.sources.cpp.members import has_class
 from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, select_interfaces
 from linkwright.review.sources.names import PYTHON_SUFFIX, NameKind, SourceName, SourceNames
-from linkwright.review.sources.package_imports import drop_defined_imports, is_installed_module
 from linkwright.review.sources.pairing import pair_similar
 from linkwright.review.sources.parameter_uses import ParameterUses
-from linkwright.review.sources.python_attributes import select_attributes
-from linkwright.review.sources.python_bases import select_methods
-from linkwright.review.sources.renamed_classes import find_renamed_classes
+from linkwright.review.sources.python.attributes import select_attributes
+from linkwright.review.sources.python.bases import select_methods
+from linkwright.review.sources.python.package_imports import drop_defined_imports, is_installed_module
+from linkwright.review.sources.statements.renamed_classes import find_renamed_classes
 from linkwright.review.sources.whole_sources import WholeSourcePair
 
 

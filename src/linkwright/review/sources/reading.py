@@ -8,10 +8,10 @@ from pathlib import Path
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.caching import cached_in_review
-from linkwright.review.sources.cpp import read_cpp
-from linkwright.review.sources.cpp_conditions import blank_disabled
+from linkwright.review.sources.cpp.preprocessor import blank_disabled
+from linkwright.review.sources.cpp_names import read_cpp
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, SourceNames
-from linkwright.review.sources.python import parse_source, read_dynamic_parameters, read_python
+from linkwright.review.sources.python_names import parse_source, read_dynamic_parameters, read_python
 
 _MAX_BYTES = 1 << 20
 _MAX_SOURCES = 4096

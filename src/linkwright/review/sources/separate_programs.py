@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import PurePosixPath
 
 from linkwright.review.caching import cached_in_review
-from linkwright.review.files.build_facts import BuildFacts, FactKind
+from linkwright.review.files.build.facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.versions import Version
 

@@ -13,7 +13,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.caching import cached_in_review
-from linkwright.review.sources.cpp_values import read_initial_values
+from linkwright.review.sources.cpp.values import read_initial_values
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

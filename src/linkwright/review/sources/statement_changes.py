@@ -8,34 +8,39 @@ from functools import partial
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.sources.added_texts import TextsChange, find_constant_changes, find_key_changes
-from linkwright.review.sources.attribute_changes import find_attribute_changes
 from linkwright.review.sources.changed_sources import ChangedSources
-from linkwright.review.sources.changed_texts import find_text_changes
-from linkwright.review.sources.changed_values import find_value_changes
-from linkwright.review.sources.code import Code
-from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
-from linkwright.review.sources.command_arguments import find_read_arguments
-from linkwright.review.sources.deferred_imports import find_deferred_imports
-from linkwright.review.sources.deprecations import find_deprecations
-from linkwright.review.sources.frame_changes import find_frame_changes
-from linkwright.review.sources.lost_message_frames import find_lost_message_frames
-from linkwright.review.sources.moved_calls import find_moved_calls
-from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX
-from linkwright.review.sources.new_assertions import find_new_assertions
-from linkwright.review.sources.new_failures import FailureSide, find_new_failures
-from linkwright.review.sources.opened_files import describe_opened_files
-from linkwright.review.sources.opposite_signs import find_opposite_reason
+from linkwright.review.sources.python.command_arguments import find_read_arguments
+from linkwright.review.sources.python.deferred_imports import find_deferred_imports
+from linkwright.review.sources.python.replaced_literals import find_replaced_literals
 from linkwright.review.sources.reading import try_parse_versions
-from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
-from linkwright.review.sources.renamed_variables import find_renamed_variables
-from linkwright.review.sources.renamed_words import rename_words
-from linkwright.review.sources.replaced_cpp_literals import find_replaced_cpp_literals
-from linkwright.review.sources.replaced_literals import find_replaced_literals
-from linkwright.review.sources.returned_codes import find_returned_codes
-from linkwright.review.sources.shown_statements import describe_outside_statements, find_shown_statements
-from linkwright.review.sources.started_commands import find_command_changes
+from linkwright.review.sources.statements.added_texts import TextsChange, find_constant_changes, find_key_changes
+from linkwright.review.sources.statements.attribute_changes import find_attribute_changes
+from linkwright.review.sources.statements.changed_texts import find_text_changes
+from linkwright.review.sources.statements.changed_values import find_value_changes
+from linkwright.review.sources.statements.code import Code
+from linkwright.review.sources.statements.code_changes import (
+    CodeChange,
+    ReportedLines,
+    find_added_code,
+    find_code_change,
+)
+from linkwright.review.sources.statements.deprecations import find_deprecations
+from linkwright.review.sources.statements.frame_changes import find_frame_changes
+from linkwright.review.sources.statements.lost_message_frames import find_lost_message_frames
+from linkwright.review.sources.statements.moved_calls import find_moved_calls
+from linkwright.review.sources.statements.moved_code import without_functions, without_statements
+from linkwright.review.sources.statements.new_assertions import find_new_assertions
+from linkwright.review.sources.statements.new_failures import FailureSide, find_new_failures
+from linkwright.review.sources.statements.opened_files import describe_opened_files
+from linkwright.review.sources.statements.opposite_signs import find_opposite_reason
+from linkwright.review.sources.statements.renamed_classes import drop_reported, find_renamed_classes, rename_classes
+from linkwright.review.sources.statements.renamed_variables import find_renamed_variables
+from linkwright.review.sources.statements.renamed_words import rename_words
+from linkwright.review.sources.statements.replaced_cpp_literals import find_replaced_cpp_literals
+from linkwright.review.sources.statements.returned_codes import find_returned_codes
+from linkwright.review.sources.statements.shown_statements import describe_outside_statements, find_shown_statements
+from linkwright.review.sources.statements.started_commands import find_command_changes
 
 
 def compare_statements(

@@ -7,7 +7,7 @@ import re
 from linkwright.diagnostics import SourceText, Span
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.sources.changed_sources import ChangedSources
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.names import PYTHON_SUFFIX, NameKind
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.versions import Version

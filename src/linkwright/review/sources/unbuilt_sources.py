@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import PurePosixPath
 
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import is_exported_header, read_package_facts
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version

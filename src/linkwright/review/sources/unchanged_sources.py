@@ -9,9 +9,9 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import find_python_packages, read_package_facts
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     HEADER_SUFFIXES,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp.text import blank_comments
 
 _ANY_READING = re.compile(
     r"\b(?:get_parameters|get_parameters_by_prefix|list_parameters|ParamListener|get_node_parameters_interface"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from linkwright.review.sources.cpp_text import blank_comments, find_arguments
-from linkwright.review.sources.new_failures import find_read_parameters
+from linkwright.review.sources.cpp.text import blank_comments, find_arguments
+from linkwright.review.sources.statements.new_failures import find_read_parameters
 
 _TEXT = re.compile(r"\"(?:\\.|[^\"\\\n])*\"")
 _LOG = re.compile(

@@ -12,8 +12,15 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.installed_paths import find_include_text, is_exported_header, read_package_facts
 from linkwright.review.sources.changed_sources import ChangedSources
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp.node_options import find_executor_change, find_option_changes
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.enumerators import compare_enumerations
+from linkwright.review.sources.headers.protected_members import compare_protected
+from linkwright.review.sources.headers.swapped_arguments import (
+    compare_argument_order,
+    find_swapped_definitions,
+    is_declared_without_order,
+)
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     HEADER_SUFFIXES,
@@ -22,25 +29,18 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
-from linkwright.review.sources.node_options import find_executor_change, find_option_changes
-from linkwright.review.sources.package_imports import (
+from linkwright.review.sources.python.methods import is_defined_by_others
+from linkwright.review.sources.python.package_imports import (
     find_failing_imports,
     is_certainly_uninstalled,
     is_installed_package,
 )
-from linkwright.review.sources.protected_members import compare_protected
-from linkwright.review.sources.python_methods import is_defined_by_others
+from linkwright.review.sources.python.undefined_uses import find_undefined_uses
 from linkwright.review.sources.rates import compare_loops, compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_removal_reason
 from linkwright.review.sources.separate_programs import are_in_separate_programs
-from linkwright.review.sources.swapped_arguments import (
-    compare_argument_order,
-    find_swapped_definitions,
-    is_declared_without_order,
-)
 from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
-from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.unread_parameters import is_only_declared
 from linkwright.review.sources.unused_parameters import find_unused_parameters, is_read_without_use
 from linkwright.review.sources.used_packages import compare_usage

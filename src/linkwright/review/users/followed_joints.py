@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from linkwright.review.breaking import joint_name_reason
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.files.moveit_names import make_uncontrolled_reason
+from linkwright.review.files.parameters.moveit_names import make_uncontrolled_reason
 from linkwright.review.users.left_robot_names import list_lost_names, list_names_of_reason
 
 _ROBOT_KINDS = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)

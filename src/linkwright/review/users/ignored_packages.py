@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import IGNORE_MARKERS, MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject
-from linkwright.review.launches.missing_programs import RepositoryPackage
+from linkwright.review.launches.programs.missing import RepositoryPackage
 from linkwright.review.versions import Version, Versions
 
 

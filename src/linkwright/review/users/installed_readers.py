@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.packages.readers.python_values import PythonFile, SharePath, called_name, join_path
-from linkwright.review.comments import CPP_SUFFIXES, XML_SUFFIXES, without_comments
+from linkwright.review.texts.comments import CPP_SUFFIXES, XML_SUFFIXES, without_comments
 
 _OTHER_SUFFIXES = (".yaml", ".yml", ".rviz", ".sh", ".bash", ".service", ".cmake", "CMakeLists.txt")
 READER_SUFFIXES = (".py", *CPP_SUFFIXES, *XML_SUFFIXES, *_OTHER_SUFFIXES)

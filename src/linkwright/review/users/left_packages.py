@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.sources.used_packages import UsedPackages, get_package
 from linkwright.review.users.old_dependencies import find_dependencies

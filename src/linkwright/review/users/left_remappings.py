@@ -10,11 +10,11 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.comments import without_comments
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = (".launch", ".xml", ".yaml", ".yml", PYTHON_SUFFIX, *CPP_SUFFIXES)

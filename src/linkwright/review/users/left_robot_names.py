@@ -14,13 +14,13 @@ from linkwright.packages.manifest import package_name
 from linkwright.review.breaking import frame_reason, frames_reason, joint_name_reason, transform_reason
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from linkwright.review.launches.outlines import PARAMETER, without_condition
-from linkwright.review.launches.programs import list_nodes, try_read_outline
-from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
-from linkwright.review.list_changes import list_items
+from linkwright.review.launches.programs.script_options import LAUNCH_SUFFIXES
+from linkwright.review.launches.programs.sources import list_nodes, try_read_outline
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
 from linkwright.review.sources.reading import read_source_names
+from linkwright.review.texts.list_changes import list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)

@@ -10,9 +10,9 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_all_controllers
-from linkwright.review.files.yaml_values import read_yaml_values
-from linkwright.review.list_changes import list_items
+from linkwright.review.files.parameters.names import find_all_controllers
+from linkwright.review.files.parameters.yaml_values import read_yaml_values
+from linkwright.review.texts.list_changes import list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SETTINGS = (".yaml", ".yml")

@@ -10,9 +10,9 @@ from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.comments import without_comments
-from linkwright.review.files.setup_files import SETUP_FILE
+from linkwright.review.files.build.setup_files import SETUP_FILE
 from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.users.references import find_share_paths
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

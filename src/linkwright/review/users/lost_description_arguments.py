@@ -10,9 +10,9 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.name_words import split_name
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.unused_arguments import is_unused_argument, reads_argument
+from linkwright.review.texts.name_words import split_name
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _SUFFIX = ".xacro"

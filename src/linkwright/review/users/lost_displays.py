@@ -12,7 +12,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.name_effects import publishes
 from linkwright.review.launches.outlines import NAMESPACE, REMAPPING, Entry, LaunchOutline
-from linkwright.review.launches.programs import try_read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import Version, Versions

@@ -8,12 +8,12 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
-from linkwright.review.files.build_facts import BuildFacts, FactKind, list_names, summarize_files
-from linkwright.review.files.installed_files import make_uninstalled_change
+from linkwright.review.files.build.facts import BuildFacts, FactKind, list_names, summarize_files
+from linkwright.review.files.build.installed_files import make_uninstalled_change
 from linkwright.review.installed_paths import find_build_file, find_python_packages, read_package_facts
 from linkwright.review.kinds import find_rule
 from linkwright.review.launch_paths import contains_actions
-from linkwright.review.renamed_packages import find_renamed_packages
+from linkwright.review.renames.packages import find_renamed_packages
 from linkwright.review.sources.reading import is_generated, read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

@@ -12,9 +12,9 @@ from linkwright.lint.rules.package_install import USUAL_FOLDERS
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.files.build_facts import list_names
+from linkwright.review.files.build.facts import list_names
 from linkwright.review.installed_paths import read_package_facts
-from linkwright.review.renamed_packages import find_renamed_packages
+from linkwright.review.renames.packages import find_renamed_packages
 from linkwright.review.users.installed_readers import READER_SUFFIXES, NamedPath, find_named_paths
 from linkwright.review.users.references import LAUNCH_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

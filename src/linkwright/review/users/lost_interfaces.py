@@ -11,15 +11,15 @@ from linkwright.messages.definitions.interfaces import Structure
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.build_facts import FactKind
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.facts import FactKind
 from linkwright.review.files.interfaces import read_structures
-from linkwright.review.launches.missing_programs import find_packages
-from linkwright.review.sources.cpp_interface_uses import find_cpp_uses, find_member_uses, find_members
-from linkwright.review.sources.interface_uses import InterfaceUse, LostInterface
-from linkwright.review.sources.lost_types import find_including_files
+from linkwright.review.launches.programs.missing import find_packages
+from linkwright.review.sources.headers.lost_types import find_including_files
+from linkwright.review.sources.interface_uses.cpp import find_cpp_uses, find_member_uses, find_members
+from linkwright.review.sources.interface_uses.definitions import InterfaceUse, LostInterface
+from linkwright.review.sources.interface_uses.python import find_python_uses
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
-from linkwright.review.sources.python_interface_uses import find_python_uses
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 INTERFACE_SUFFIXES = (".msg", ".srv", ".action")

@@ -9,10 +9,10 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.comments import without_comments
-from linkwright.review.files.build_facts import BuildFacts, FactKind
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
+from linkwright.review.texts.comments import without_comments
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _READER_SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".gazebo", ".xml")

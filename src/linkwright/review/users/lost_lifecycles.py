@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.sources.lost_types import blank_comments
+from linkwright.review.sources.headers.lost_types import blank_comments
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

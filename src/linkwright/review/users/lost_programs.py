@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
+from linkwright.review.launches.programs.script_options import LAUNCH_SUFFIXES
 from linkwright.review.versions import Version, Versions
 
 _USER_SUFFIXES = (*LAUNCH_SUFFIXES, "CMakeLists.txt")

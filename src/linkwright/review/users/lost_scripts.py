@@ -15,12 +15,12 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.command_files import list_command_files
-from linkwright.review.files.build_facts import FactKind
-from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.files.setup_files import SETUP_FILE
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
+from linkwright.review.files.build.facts import FactKind
+from linkwright.review.files.build.setup_files import SETUP_FILE
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
+from linkwright.review.launches.programs.missing import RepositoryPackage, find_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py", ".sh", ".bash", ".pl", ".rb")

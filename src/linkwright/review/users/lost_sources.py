@@ -9,8 +9,8 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.sources.cpp_conditions import blank_disabled
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
+from linkwright.review.sources.cpp.preprocessor import blank_disabled
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Versions
 

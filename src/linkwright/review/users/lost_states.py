@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.files.moveit_names import make_uncontrolled_reason
+from linkwright.review.files.parameters.moveit_names import make_uncontrolled_reason
 from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version, Versions
 

@@ -16,9 +16,9 @@ from linkwright.messages.definitions.library import TrustedMessages, parse_sourc
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
-from linkwright.review.sources.interface_uses import InterfaceUse, LostInterface
+from linkwright.review.sources.interface_uses.definitions import InterfaceUse, LostInterface
+from linkwright.review.sources.interface_uses.python import find_python_uses
 from linkwright.review.sources.names import PYTHON_SUFFIX
-from linkwright.review.sources.python_interface_uses import find_python_uses
 from linkwright.review.users.lost_interfaces import INTERFACE_SUFFIXES, find_package, list_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

@@ -10,8 +10,8 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.missing_programs import RepositoryPackage
-from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.launches.programs.missing import RepositoryPackage
+from linkwright.review.sources.cpp.text import blank_comments
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.users.lost_interfaces import find_package
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

@@ -12,7 +12,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import read_yaml_text, read_yaml_values
+from linkwright.review.files.parameters.yaml_values import read_yaml_text, read_yaml_values
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 

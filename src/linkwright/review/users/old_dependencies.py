@@ -11,8 +11,8 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.renamed_packages import find_renamed_packages
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
+from linkwright.review.renames.packages import find_renamed_packages
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 

@@ -14,8 +14,8 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.comments import CPP_SUFFIXES, XML_SUFFIXES, without_comments
-from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.renames.packages import PackageNames, find_renamed_packages
+from linkwright.review.texts.comments import CPP_SUFFIXES, XML_SUFFIXES, without_comments
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 from linkwright.xacro.cache import read_document
 

@@ -12,9 +12,9 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import find_launch_files
-from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
-from linkwright.review.launches.script_options import find_refused_options
-from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.launches.programs.missing import RepositoryPackage, find_packages
+from linkwright.review.launches.programs.script_options import find_refused_options
+from linkwright.review.renames.packages import PackageNames, find_renamed_packages
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.users.installed_readers import find_named_paths
 from linkwright.review.versions import Version, Versions

@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterable, Sequence
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
-from linkwright.review.launches.helper_failures import find_helper_failures
+from linkwright.review.launches.arguments.passed import find_passed_arguments, find_refused_arguments
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
-from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
-from linkwright.review.launches.passed_arguments import find_passed_arguments, find_refused_arguments
-from linkwright.review.launches.script_callers import find_lost_arguments
-from linkwright.review.sources.callers import find_broken_callers
+from linkwright.review.launches.programs.missing import find_missing_programs, find_old_package_names
+from linkwright.review.launches.programs.script_callers import find_lost_arguments
+from linkwright.review.launches.python.helper_failures import find_helper_failures
+from linkwright.review.sources.headers.lost_methods import find_lost_methods
+from linkwright.review.sources.headers.lost_types import find_lost_types
 from linkwright.review.sources.left_types import find_left_types
-from linkwright.review.sources.lost_methods import find_lost_methods
-from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.sources.python_callers import find_broken_callers
 from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers

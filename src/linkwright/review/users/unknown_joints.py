@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.files.parameters.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.users.left_robot_names import RobotFiles, RobotName
 from linkwright.review.versions import TEST_FOLDERS, Versions
 

@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Location
-from linkwright.review.launches.missing_programs import RepositoryPackage
+from linkwright.review.launches.programs.missing import RepositoryPackage
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py")

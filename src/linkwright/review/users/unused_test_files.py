@@ -6,7 +6,7 @@ import re
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
-from linkwright.review.files.cmake_branches import iterate_conditional_commands
+from linkwright.review.files.build.cmake_branches import iterate_conditional_commands
 from linkwright.review.installed_paths import find_targets
 from linkwright.review.users.installed_readers import READER_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

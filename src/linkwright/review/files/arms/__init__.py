@@ -1,0 +1,1 @@
+"""Compare the semantic descriptions and planning groups of MoveIt."""

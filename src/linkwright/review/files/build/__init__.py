@@ -1,0 +1,1 @@
+"""Compare what packages build and install: CMakeLists.txt, setup.py, package.xml and their dependencies."""

@@ -1,0 +1,1 @@
+"""Compare worlds and models in SDF, also as templates."""

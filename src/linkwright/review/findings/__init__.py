@@ -1,0 +1,1 @@
+"""Compare the findings of `linkwright check` in both versions."""

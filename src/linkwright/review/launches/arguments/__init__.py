@@ -1,0 +1,1 @@
+"""Compare the arguments of launch files with what the files and their callers use."""

@@ -1,0 +1,1 @@
+"""Find the programs that launch files start, and what these programs offer and read."""

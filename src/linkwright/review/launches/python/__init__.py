@@ -1,0 +1,1 @@
+"""Read Python launch files without running them."""

@@ -1,0 +1,1 @@
+"""Find names and values in the text of C++ sources."""

@@ -1,0 +1,1 @@
+"""Compare the C++ headers that other packages include."""

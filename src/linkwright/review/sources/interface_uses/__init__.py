@@ -1,0 +1,1 @@
+"""Find the uses of interfaces and fields that the repository lost."""

@@ -1,0 +1,1 @@
+"""Find names, values and undefined names in the syntax trees of Python sources."""

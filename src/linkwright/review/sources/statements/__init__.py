@@ -1,0 +1,1 @@
+"""Compare the statements of two versions of a source."""

@@ -1,0 +1,1 @@
+"""Write changes as short texts: merge equal ones, shorten long ones, and hide secrets."""
