@@ -99,6 +99,7 @@ class GitRepository:
 
     def __init__(self, folder: Path, subject: str, hint: Phrase, *, downloads_lfs: bool = True) -> None:
         self.root = folder
+        self._modes: dict[str, Mapping[str, str]] = {}
         self._variables = {} if downloads_lfs else {"GIT_LFS_SKIP_SMUDGE": "1"}
         result = self.run("rev-parse", "--show-toplevel")
         if result.returncode != 0:
@@ -210,12 +211,19 @@ class GitRepository:
 
     def list_files(self, commit: str) -> list[str]:
         """Return the paths of a commit's files, relative to the root."""
-        return self.run("ls-tree", "-r", "-z", "--name-only", "--full-tree", commit).stdout.split("\0")[:-1]
+        return list(self._file_modes(commit))
 
     def list_symbolic_links(self, commit: str) -> list[str]:
         """Return the paths of a commit's symbolic links, relative to the root."""
-        entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")
-        return [entry.partition("\t")[2] for entry in entries if entry.startswith(_LINK_MODE)]
+        return [path for path, mode in self._file_modes(commit).items() if mode == _LINK_MODE]
+
+    def _file_modes(self, commit: str) -> Mapping[str, str]:
+        """Return git's modes of a commit's files, by the path relative to the root."""
+        modes = self._modes.get(commit)
+        if modes is None:
+            entries = self.run("ls-tree", "-r", "-z", "--full-tree", commit).stdout.split("\0")[:-1]
+            modes = self._modes[commit] = {path: mode for mode, path in map(_split_tree_entry, entries)}
+        return modes
 
     def write_files(
         self,
@@ -248,7 +256,7 @@ class GitRepository:
         is_read = result.returncode == 0
         if is_read:
             folder.mkdir(exist_ok=True)
-            names = self.run("ls-files", "-z", environment=environment).stdout.split("\0")[:-1]
+            names = self.list_files(commit)
             unused = find_unused(names) if find_unused is not None else ()
             selection: Sequence[str] = ("--all",)
             text = None
@@ -385,6 +393,12 @@ def read_lfs_pointer(path: Path) -> LfsPointer | None:
         return None
     match = _LFS_POINTER.match(start)
     return LfsPointer(match["hash"].decode(), int(match["size"])) if match else None
+
+
+def _split_tree_entry(entry: str) -> tuple[str, str]:
+    """Return the mode and the path in a line of `git ls-tree`."""
+    properties, _, path = entry.partition("\t")
+    return properties.partition(" ")[0], path
 
 
 def _pair_equal_files(changes: Iterable[_RawChange]) -> list[ChangedFile]:
