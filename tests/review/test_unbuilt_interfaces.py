@@ -56,6 +56,23 @@ def test_added_interface_that_is_not_built_is_named(repository, compare, listed,
 
 
 @pytest.mark.parametrize(
+    ("command", "is_built"),
+    [
+        ("# rosidl_generate_interfaces(${PROJECT_NAME} srv/Move.srv)", False),
+        ("my_generate_interfaces()", True),
+        ("include(cmake/types.cmake)", True),
+        ("include_directories(include)", False),
+    ],
+)
+def test_build_file_without_any_interface_builds_none(repository, compare, command, is_built):
+    repository.commit({"arm_msgs/package.xml": FILES["arm_msgs/package.xml"], CMAKE_PATH: "project(arm_msgs)\n"})
+    package = "find_package(rosidl_default_generators REQUIRED)"
+    repository.write({CMAKE_PATH: f"project(arm_msgs)\n{package}\n{command}\n", PATH: "float64 x\n---\n"})
+    note = "" if is_built else "; CMakeLists.txt does not build it"
+    assert sentences(subject(compare(repository), PATH)) == [f"interface added: request: float64 x{note}"]
+
+
+@pytest.mark.parametrize(
     ("listed", "expected", "is_breaking"),
     [
         ("", "interface removed: request: float64 x; CMakeLists.txt did not build it", False),

@@ -13,12 +13,18 @@ from linkwright.review.versions import Version
 
 _COMMENT = re.compile(r"#[^\n]*")
 _SEARCH = re.compile(r"\bGLOB(?:_RECURSE)?\b", re.IGNORECASE)
+_GENERATOR = re.compile(
+    r"\w*(?:interface|message|service|action|rosidl_gen|gen(?:msg|srv))\w*\s*\(|\binclude\s*\(|\.(?:msg|srv|action|idl)\b",
+    re.IGNORECASE,
+)
+"""Commands that may build interfaces, and those that read a file with such commands."""
 
 
 def is_unbuilt(version: Version, path: str) -> bool:
-    """Return whether the ``CMakeLists.txt`` of a package lists interfaces, but not a given one.
+    """Return whether the ``CMakeLists.txt`` of a package certainly does not build an interface.
 
-    It is not certain if the file finds interfaces by patterns or has the name in any form.
+    It is not certain if the file finds interfaces by patterns or has the name in any form. A file that lists no
+    interface must also have no command that builds some.
 
     Args:
         version: the version of the repository.
@@ -29,10 +35,12 @@ def is_unbuilt(version: Version, path: str) -> bool:
         return False
     build_file = f"{package}/{CMAKE_FILE}".lstrip("/")
     name = PurePosixPath(path).stem
-    built_names = _read_built_names(version, build_file) if version.file(build_file).is_file() else frozenset()
-    if not built_names or name in built_names:
+    if not version.file(build_file).is_file():
         return False
+    built_names = _read_built_names(version, build_file)
     text = _COMMENT.sub("", version.text(build_file))
+    if name in built_names or (not built_names and _GENERATOR.search(text) is not None):
+        return False
     has_name = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
     return not has_name and _SEARCH.search(text) is None
 
