@@ -98,6 +98,12 @@ def test_environment_variables_and_required_arguments(review_changes_with_reason
     assert review_changes_with_reasons(READING.replace(old, new))[expected] == reason
 
 
+def test_variable_that_ros_reads_itself_keeps_its_effect(review_changes_with_reasons):
+    old = READING.replace('"MODEL"', '"ROS_IP"')
+    changes = review_changes_with_reasons(old.replace('os.environ["ROS_IP"]', '"arm"'), old=old)
+    assert changes["use of environment variable 'ROS_IP' removed"] is None
+
+
 def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(review_changes_with_reasons):
     node = 'Node(package="arm", executable="hand"'
     old = READING.replace(node, f'{node}, remappings=[("a", "arm/a"), ("b", "arm/b"), ("c", "arm/c")]')

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.caching import cached_in_review
+from linkwright.review.environment_names import is_read_by_others
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.texts.comments import without_comments
@@ -35,10 +36,12 @@ def explain_removed_reading(pair: FilePair, name: str) -> tuple[str | None, Phra
     The reason why this is breaking is None if it is not. The path is relative to the root.
     """
     reader = _find_reader(pair.versions.new, name, pair.new_path)
+    if reader is None and is_read_by_others(name):
+        return None, None
     if reader is None:
         return None, phrase("a value that a user sets for '{name}' has no effect", name=name)
     was_reader = reader in _find_readers_by_variable(pair.versions.old).get(name, ())
-    is_ignored = was_reader and not is_launch_file(reader) and not name.startswith("ROS_")
+    is_ignored = was_reader and not is_launch_file(reader) and not is_read_by_others(name)
     return reader, phrase("the launch file ignores the value of '{name}'", name=name) if is_ignored else None
 
 

@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.environment_names import is_read_by_others
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Versions
 
@@ -116,22 +117,17 @@ class Fact:
     condition: str = ""
 
 
-_STANDARD_VARIABLES = frozenset(
-    {"HOME", "PATH", "PWD", "USER", "CC", "CXX", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH"}
-)
-
-
 class EnvironmentVariables:
     """The environment variables that the build reads, by name, with their locations.
 
     Args:
-        variables: the names and locations. Variables that ROS and the system set themselves are left out.
+        variables: the names and locations. Variables that ROS and build tools read themselves are left out.
     """
 
     def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
         self._spans: dict[str, Span | None] = {}
         for name, span in variables:
-            if not name.startswith("ROS_") and name not in _STANDARD_VARIABLES:
+            if not is_read_by_others(name):
                 self._spans.setdefault(name, span)
 
     def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
