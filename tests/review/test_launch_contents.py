@@ -55,6 +55,17 @@ def test_added_and_removed_node_has_its_contents(review_changes, is_added, word)
     ]
 
 
+def test_added_launch_file_names_everything_before_details(repository, compare):
+    parameters = "".join(f'<param name="rate_of_stream_{number}" value="{number}"/>' for number in range(12))
+    nodes = "".join(f'<node pkg="cam" exec="driver_{number}">{parameters}</node>' for number in range(6))
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: f'<launch><arg name="side" default="left"/>{nodes}</launch>'})
+    (sentence,) = sentences(subject(compare(repository), PATH))
+    assert len(sentence) < 1000
+    assert "node 'cam/driver_5' (parameter rate_of_stream_0 0, parameter rate_of_stream_1 1 and 10 more)" in sentence
+    assert sentence.endswith("argument 'side' (default left, unused)")
+
+
 def test_all_remappings_of_an_added_node_are_shown(review_changes):
     topics = [f"camera/stream_{number}/image_raw" for number in range(20)]
     node = "".join(f'<remap from="{topic}" to="front/{topic}"/>' for topic in topics)

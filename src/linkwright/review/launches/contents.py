@@ -28,8 +28,10 @@ _SHOWN_KINDS = (
     "environment",
     READING, "handler", IGNORED_TAG, "argument",
 )  # fmt: skip
-_MAX_SETTINGS = 8
-"""The maximum number of settings of each action in the line."""
+_MAX_SETTINGS = (8, 4, 2, 1)
+"""The maximum numbers of settings of each action in the line: the first with which the line is short enough counts."""
+_MAX_CHARACTERS = 900
+"""The maximum length of the line. Reports cut longer ones, and with them whole actions and arguments."""
 
 
 def launch_contents(version: Version, path: str) -> Phrase | None:
@@ -52,7 +54,10 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
         if entry.kind in _SHOWN_KINDS and not (entry.kind == READING and entry.settings)
     ]
     sorted_entries = sorted(entries, key=lambda entry: _SHOWN_KINDS.index(entry.kind))
-    titles = list(dict.fromkeys(_format_title_with_settings(entry, unused) for entry in sorted_entries))
+    for limit in _MAX_SETTINGS:
+        titles = list(dict.fromkeys(_format_title_with_settings(entry, unused, limit) for entry in sorted_entries))
+        if sum(len(str(title)) for title in titles[: MAX_NAMES + 1]) <= _MAX_CHARACTERS:
+            break
     if any(not entry.settings.keys().isdisjoint(FAILURES) for entry in entries):
         return phrase(
             "{items}; an action has wrong arguments, so that the file fails", items=joined_first(titles, MAX_NAMES)
@@ -70,7 +75,7 @@ def started_contents(version: Version, path: str) -> Phrase | None:
         return launch_contents(version, path)
     outline = read_outline(version.file(path), version.root)
     started = [
-        _format_title_with_settings(entry, ()) if entry.kind == "include" else format_title(entry)
+        _format_title_with_settings(entry, (), _MAX_SETTINGS[0]) if entry.kind == "include" else format_title(entry)
         for entry in outline.entries
         if entry.kind in STARTING_KINDS
     ]
@@ -91,9 +96,9 @@ def _find_unused_arguments(file: Path, outline: LaunchOutline) -> frozenset[str]
     return frozenset(name for name in names if not uses_argument(file, name, outline.entries))
 
 
-def _format_title_with_settings(entry: Entry, unused: Collection[str]) -> Phrase:
-    """Return the title of an action with its settings, such as the default of an argument."""
-    items = format_settings(entry, _MAX_SETTINGS)
+def _format_title_with_settings(entry: Entry, unused: Collection[str], limit: int) -> Phrase:
+    """Return the title of an action with its first settings, such as the default of an argument."""
+    items = format_settings(entry, limit)
     if entry.kind == READING:
         return phrase("{entry} (required)", entry=format_title(entry))
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
