@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.cpp.members import has_class
+from linkwright.review.sources.gazebo_topics import GAZEBO_KINDS, select_gazebo_topics
 from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, select_interfaces
 from linkwright.review.sources.names import PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 from linkwright.review.sources.pairing import pair_similar
@@ -36,6 +37,8 @@ class PairedNames(WholeSourcePair):
             )
         if kind in INTERFACE_KINDS:
             return select_interfaces(removed, new_names), select_interfaces(added, old_names)
+        if kind in GAZEBO_KINDS:
+            return select_gazebo_topics(removed, new_names), select_gazebo_topics(added, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
             return removed, added

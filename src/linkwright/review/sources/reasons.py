@@ -10,7 +10,8 @@ from linkwright.review.breaking import frames_reason, message_frame_reason, name
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
 _HARMLESS_KINDS = (
-    *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
+    *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.GAZEBO_CLIENT),
+    *(NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
     *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS, NameKind.HARDWARE_ELEMENT),
 )
 _REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
