@@ -81,7 +81,7 @@ def find_gazebo_topics(
 
 
 def _join(text: str, expression: str, position: int) -> str | None:
-    """Return the name that an expression gives at an offset, with marks for unknown parts; None if it has no known text.
+    """Return the name that an expression gives at an offset, or None if it has no known text. Unknown parts have marks.
 
     The expression is a sum, or a variable that gets one. Of a list of possible names, the last one is the default.
     """

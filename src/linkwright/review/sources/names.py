@@ -40,6 +40,7 @@ class NameKind(Enum):
     GAZEBO_CLIENT = (phrase("service client in Gazebo"), phrase("service clients in Gazebo"))
     PARAMETER = (phrase("parameter"), phrase("parameters"))
     ELEMENT = (phrase("parameter of the plugin"), phrase("parameters of the plugin"))
+    YAML_KEY = (phrase("key of YAML files"), phrase("keys of YAML files"))
     NODE = (phrase("node"), phrase("nodes"))
     FRAME = (phrase("frame"), phrase("frames"))
     MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))

@@ -37,6 +37,10 @@ class PairedNames(WholeSourcePair):
             )
         if kind in INTERFACE_KINDS:
             return select_interfaces(removed, new_names), select_interfaces(added, old_names)
+        if kind is NameKind.YAML_KEY:
+            return [i for i in removed if not self.new.has_text(i.name)], [
+                i for i in added if not self.old.has_text(i.name)
+            ]
         if kind in GAZEBO_KINDS:
             return select_gazebo_topics(removed, new_names), select_gazebo_topics(added, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)

@@ -16,7 +16,7 @@ _MAX_COMPARED_PAIRS = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
 _UNTYPED_KINDS = (
     *(NameKind.PARAMETER, NameKind.ELEMENT, NameKind.HARDWARE_PARAMETER, NameKind.HARDWARE_ELEMENT),
-    *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION),
+    *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION, NameKind.YAML_KEY),
 )
 """The kinds for which equal types do not suggest a rename."""
 

@@ -68,6 +68,8 @@ def find_removal_reason(
         return phrase("values that launch files and parameter files give to {names} have no effect", names=text)
     if kind is NameKind.ELEMENT:
         return phrase("values that worlds and descriptions give to {names} have no effect", names=text)
+    if kind is NameKind.YAML_KEY:
+        return phrase("values that YAML files give to {names} have no effect", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
         return phrase("values that descriptions give to {names} have no effect", names=text)
     if kind is NameKind.FRAME:
