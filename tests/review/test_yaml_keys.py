@@ -66,7 +66,15 @@ def test_new_key_that_files_may_leave_out_is_not_breaking(review_loader, code):
 
 
 @pytest.mark.parametrize(
-    "code", ['root["written"] = 1;', 'root["a"]["written"] = 1;', 'table["written"].as<int>();', "f(root[written]);"]
+    "code",
+    [
+        'root["written"] = 1;',
+        'root["a"]["written"] = 1;',
+        'root["written"].push_back(1);',
+        'root["written"] = 1; f(root["written"]);',
+        'table["written"].as<int>();',
+        "f(root[written]);",
+    ],
 )
 def test_written_parts_and_other_containers_have_no_keys(review_loader, code):
     lines, broken, _ = review_loader("", code)

@@ -12,8 +12,8 @@ _TAKEN = re.compile(
     r"\b(?P<name>\w+)\s*(?:=\s*(?:YAML\s*::\s*Load\w*\s*\(|(?P<node>\w+)\s*\[)|:\s*(?P<list>\w+)\s*[)\[])"
 )
 """A variable that gets a loaded file, a part of another node, or each item of one."""
-_CHAIN = r"(?<![\w.>:])(?:this\s*->\s*)?(?:{names})(?P<chain>(?:\s*\[[^\[\]]*\])+)(?!\s*(?:\[|=(?!=)))"
-"""A part of a node, unless it is assigned."""
+_CHAIN = r"(?<![\w.>:])(?:this\s*->\s*)?(?P<node>{names})(?P<chain>(?:\s*\[[^\[\]]*\])+)(?!\s*(?:\[|=(?!=)|\.\s*push_back\b))"
+"""A part of a node, unless it is written."""
 _KEY = re.compile(r'\[\s*"(?P<key>[^"\\]+)"\s*\]')
 _CONVERTED = re.compile(r"\s*\.\s*as\s*<[^;()]*>\s*\(\s*\)")
 """A conversion without a fallback, which throws an error if the key is missing."""
@@ -43,6 +43,8 @@ def find_yaml_keys(text: str, headers: Sequence[str]) -> Iterator[FoundName]:
     tested = {key["key"] for match in chains if _is_tested(text, match) for key in _KEY.finditer(match["chain"])}
     for match in chains:
         for key in _KEY.finditer(match["chain"]):
+            if re.search(rf"\b{match['node']}\s*\[\s*\"{re.escape(key['key'])}\"\s*\]\s*=(?!=)", text):
+                continue  # the source writes the key itself
             is_converted = _CONVERTED.match(text, match.end()) is not None
             is_required = is_converted and not is_caught and key["key"] not in tested
             start = match.start("chain") + key.start("key")
