@@ -12,7 +12,10 @@ _TAKEN = re.compile(
     r"\b(?P<name>\w+)\s*(?:=\s*(?:YAML\s*::\s*Load\w*\s*\(|(?P<node>\w+)\s*\[)|:\s*(?P<list>\w+)\s*[)\[])"
 )
 """A variable that gets a loaded file, a part of another node, or each item of one."""
-_CHAIN = r"(?<![\w.>:])(?:this\s*->\s*)?(?P<node>{names})(?P<chain>(?:\s*\[[^\[\]]*\])+)(?!\s*(?:\[|=(?!=)|\.\s*push_back\b))"
+_CHAIN = (
+    r"(?<![\w.>:])(?:this\s*->\s*)?(?P<node>{names})(?P<chain>(?:\s*\[[^\[\]]*\])+)"
+    r"(?!\s*(?:\[|=(?!=)|\.\s*push_back\b))"
+)
 """A part of a node, unless it is written."""
 _KEY = re.compile(r'\[\s*"(?P<key>[^"\\]+)"\s*\]')
 _CONVERTED = re.compile(r"\s*\.\s*as\s*<[^;()]*>\s*\(\s*\)")
