@@ -7,8 +7,8 @@ import pytest
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
-CPP = """#include <yaml-cpp/yaml.h>
-void load(const YAML::Node & sensor) {
+CPP = """#include <nlohmann/json.hpp>
+void load(const json & sensor) {
   auto type = sensor["type"].as<std::string>();
   if (type == "lidar") { add(); }
   step();

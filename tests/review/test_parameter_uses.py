@@ -102,3 +102,22 @@ def test_a_parameter_of_hardware_is_renamed_only_with_the_same_use(repository, c
     title = "parameter of the hardware" if is_renamed else "parameters of the hardware removed:"
     renamed = " renamed to 'speed_gain'" if is_renamed else ""
     assert breaking(compare(repository)) == [f"{title} 'speed_zone'{renamed}"]
+
+
+def test_parameters_that_are_edited_alike_are_renamed_although_other_words_of_their_lines_change(repository, compare):
+    source = """#include <rclcpp/rclcpp.hpp>
+Camera::Camera() : Node("camera")
+{{
+  declare_parameter("{0}_image_topic", "");
+  declare_parameter("{0}_info_topic", "");
+  auto {0}_image_topic = get_parameter("{0}_image_topic").as_string();
+  auto {0}_info_topic = get_parameter("{0}_info_topic").as_string();
+  use({0}_node_, {0}_image_topic, 1);
+  if ({0}_info_topic != "") {{ listen({0}_node_, {0}_info_topic); }}
+}}
+"""
+    repository.commit({**MANIFEST, "arm/src/camera.cpp": source.format("old")})
+    repository.write({"arm/src/camera.cpp": source.format("new")})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.sentence) == "parameter 'old_image_topic' (\"\") renamed to 'new_image_topic' (\"\")"
+    assert change.other_names == ('old_info_topic ("") -> new_info_topic ("")',)

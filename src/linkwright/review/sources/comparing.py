@@ -33,6 +33,7 @@ from linkwright.review.sources.hardware_interfaces import find_description_witho
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
+from linkwright.review.sources.moved_names import find_moved_names
 from linkwright.review.sources.name_patterns import ends_with_name, extract_pattern, lists_names
 from linkwright.review.sources.names import (
     DYNAMIC_SUFFIX,
@@ -184,6 +185,9 @@ class _SourcePair(PairedNames):
             or has_only_in_other_nodes(item, self.old, self.new, (old_path, path))
             or is_new_in_plugin(item, self.old, self.new, (old_path, path))
         ]
+        kept = [item for item in only_old.values() if item not in removed]
+        for text, item in find_moved_names(kept, self.old, self.new, self.file):
+            yield self.make_change(text, item.span, self.old, None)
         removed = [i for i in removed if i.name not in new_names.passed_on and not new_names.has_default(i)]
         added = [i for i in added if i.name not in old_names.passed_on and not old_names.has_default(i)]
         removed, added = self.select_reported(kind, removed, added, old_names, new_names)

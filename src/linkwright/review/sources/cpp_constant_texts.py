@@ -25,6 +25,9 @@ from linkwright.review.sources.shared_constants import read_header_constants
 _MESSAGE_CONSTANT = re.compile(r"\s*(?P<type>(?:::)?(?:\w+::)*[A-Z]\w*)::(?P<name>[A-Z][A-Z0-9_]*)\s*")
 """A constant of a message, such as ``arm_msgs::msg::Topics::STATE``."""
 _PART = re.compile(r'"[^"\\]*"|[A-Za-z_]\w*')
+_NODE_NAME = r"(?:ros\s*::\s*)?this_node\s*::\s*getName\s*\(\s*\)"
+_PRIVATE = re.compile(rf'[\s(]*(?:{_NODE_NAME}|(?P<variable>\w+))\s*\+\s*"/(?P<name>[^"\\]+)"[\s)]*')
+"""A name below that of the node in ROS 1, which is a private one."""
 
 
 class ConstantTexts:
@@ -54,6 +57,9 @@ class ConstantTexts:
         literal = TEXT.fullmatch(expression)
         if literal is not None:
             return literal["text"]
+        private = _PRIVATE.fullmatch(expression)
+        if private is not None and (private["variable"] is None or self._is_node_name(private["variable"])):
+            return f"~{private['name']}"
         parts = split_sum(expression)
         if len(parts) > 1 and all(map(_PART.fullmatch, parts)):
             return self._join(parts, begin)
@@ -70,6 +76,12 @@ class ConstantTexts:
         variable = VARIABLE.fullmatch(expression)
         assigned = None if variable is None else find_assigned_expression(self._text, variable["name"], position)
         return assigned if assigned is not None and is_sum_of_texts(assigned) else expression
+
+    def _is_node_name(self, variable: str) -> bool:
+        """Return whether a variable only gets the name of the node, as ``name_ = ros::this_node::getName();`` does."""
+        pattern = rf"\b{variable}\s*(?:=(?!=)|[({{])\s*(?P<own>{_NODE_NAME}\s*[)}}]?\s*[;,{{])?"
+        assigned = [match["own"] for match in re.finditer(pattern, self._text)]
+        return bool(assigned) and None not in assigned
 
     def _find_in_message(self, expression: str) -> str | None:
         """Return the text of a constant of a message of the repository, or None for other expressions."""

@@ -54,9 +54,11 @@ from linkwright.review.sources.cpp.values import (
     parse_literal,
 )
 from linkwright.review.sources.cpp.variable_types import VariableTypes
+from linkwright.review.sources.cpp.yaml_keys import find_yaml_keys
 from linkwright.review.sources.cpp_constant_texts import ConstantTexts
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
+from linkwright.review.sources.gazebo_topics import find_gazebo_topics
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import extract_pattern, find_format
@@ -162,10 +164,12 @@ class _Reader:
         for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
-        for interface in find_hardware_interfaces(text, self._texts.evaluate):
-            details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
-            default = interface.variable and self._initial_values.find_default(interface.variable, interface.start)
-            self._add(interface.kind, interface.name, interface.start, interface.end, default or "", details)
+        for topic in find_gazebo_topics(text, self._headers, self._texts.evaluate):
+            self._add(topic.kind, topic.name, topic.begin, topic.end, topic.type)
+        for found in (*find_hardware_interfaces(text, self._texts.evaluate), *find_yaml_keys(text, self._headers)):
+            details = ((Detail.REQUIRED, YES),) if found.is_required else ()
+            default = found.variable and self._initial_values.find_default(found.variable, found.start)
+            self._add(found.kind, found.name, found.start, found.end, default or "", details)
         for declared in find_declared_groups(text):
             details = ((Detail.VALUE_TYPE, declared.type),) if declared.type else ()
             self._add(NameKind.PARAMETER, declared.name, declared.start, declared.end, declared.default, details)

@@ -350,7 +350,7 @@ def _read_number(text: str) -> float | None:
 def make_required_reason(kind: NameKind, names: Sequence[str]) -> Phrase:
     """Return the reason why an option or parameter without a default is breaking."""
     text = quote_first(names)
-    if kind is NameKind.PARAMETER:
+    if kind in (NameKind.PARAMETER, NameKind.YAML_KEY):
         return phrase("the program fails where {names} is not set", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
         return phrase("the hardware fails where the description does not give {names}", names=text)

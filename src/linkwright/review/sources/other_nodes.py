@@ -49,7 +49,7 @@ def _has_only_in_other_programs(
         package is not None
         and bool(owners)
         and owners <= other.list_owners(item, paths[1]).keys()
-        and not any(_are_connected(sources, path, owner) for owner in owners)
+        and not any(are_connected(sources, path, owner) for owner in owners)
         and are_in_separate_programs(sources.version, package, path, owners)
     )
 
@@ -86,7 +86,7 @@ def _has_only_elsewhere(
     owners = side.list_owners(item, paths[0])
     return (
         bool(owners)
-        and all(is_separate(names) and not _are_connected(side, paths[0], owner) for owner, names in owners.items())
+        and all(is_separate(names) and not are_connected(side, paths[0], owner) for owner, names in owners.items())
         and owners.keys() <= other.list_owners(item, paths[1]).keys()
     )
 
@@ -101,7 +101,7 @@ def find_other_node_reason(items: Sequence[SourceName]) -> Phrase | None:
     return phrase("this node no longer has {names}; only another node of the package still has it", names=names)
 
 
-def _are_connected(sources: ChangedSources, path: str, other: str) -> bool:
+def are_connected(sources: ChangedSources, path: str, other: str) -> bool:
     """Return whether one of two files includes or imports the other one or its header."""
     stems = PurePosixPath(path).stem, PurePosixPath(other).stem
     return stems[0] == stems[1] or any(

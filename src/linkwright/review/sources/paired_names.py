@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.cpp.members import has_class
+from linkwright.review.sources.gazebo_topics import GAZEBO_KINDS, select_gazebo_topics
 from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, select_interfaces
 from linkwright.review.sources.names import PYTHON_SUFFIX, NameKind, SourceName, SourceNames
-from linkwright.review.sources.pairing import pair_similar
+from linkwright.review.sources.pairing import pair_edited_alike, pair_similar
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.python.attributes import select_attributes
 from linkwright.review.sources.python.bases import select_methods
@@ -36,6 +37,12 @@ class PairedNames(WholeSourcePair):
             )
         if kind in INTERFACE_KINDS:
             return select_interfaces(removed, new_names), select_interfaces(added, old_names)
+        if kind is NameKind.YAML_KEY:
+            return [i for i in removed if not self.new.has_text(i.name)], [
+                i for i in added if not self.old.has_text(i.name)
+            ]
+        if kind in GAZEBO_KINDS:
+            return select_gazebo_topics(removed, new_names), select_gazebo_topics(added, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
             return removed, added
@@ -66,7 +73,9 @@ class PairedNames(WholeSourcePair):
         if kind in (NameKind.PARAMETER, NameKind.HARDWARE_PARAMETER) and old_items and new_items:
             if kind is NameKind.PARAMETER:
                 old_items = [item for item in old_items if not self.is_unread_parameter(item.name)]
-            return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
+            pairs = pair_edited_alike(old_items, new_items)
+            old_items, new_items = _drop_paired(pairs, old_items, new_items)
+            return [*pairs, *pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)]
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
         elif kind is NameKind.CLASS and not self.file.path.endswith(PYTHON_SUFFIX):
@@ -74,11 +83,7 @@ class PairedNames(WholeSourcePair):
         else:
             old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
             pairs = pair_by_callback(old_items, new_items, old_names, new_names)
-        paired = [item for pair in pairs for item in pair]
-        unpaired_old, unpaired_new = (
-            [item for item in items if item not in paired] for items in (old_items, new_items)
-        )
-        return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
+        return [*pairs, *pair_similar(*_drop_paired(pairs, old_items, new_items))]
 
     def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
         return ParameterUses(*self.read_texts(), [item.name for item in old_items], [item.name for item in new_items])
@@ -112,3 +117,12 @@ class PairedNames(WholeSourcePair):
         old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
         renamed = {} if old is None or new is None or not (removed and added) else find_renamed_classes(old, new)
         return [(item, other) for item in removed for other in added if renamed.get(item.name) == other.name]
+
+
+def _drop_paired(
+    pairs: Sequence[tuple[SourceName, SourceName]], *sides: Sequence[SourceName]
+) -> tuple[list[SourceName], list[SourceName]]:
+    """Return the old and the new names that are in no pair."""
+    paired = [item for pair in pairs for item in pair]
+    old, new = ([item for item in items if item not in paired] for items in sides)
+    return old, new

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.review.sources.details import has_same_parameters
 from linkwright.review.sources.name_patterns import can_make
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.texts.merging import name_edit
 
 _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
@@ -16,7 +19,7 @@ _MAX_COMPARED_PAIRS = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
 _UNTYPED_KINDS = (
     *(NameKind.PARAMETER, NameKind.ELEMENT, NameKind.HARDWARE_PARAMETER, NameKind.HARDWARE_ELEMENT),
-    *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION),
+    *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION, NameKind.YAML_KEY),
 )
 """The kinds for which equal types do not suggest a rename."""
 
@@ -65,6 +68,25 @@ def pair_similar(
             pairs.append((item, best))
             unpaired.remove(best)
     return pairs
+
+
+def pair_edited_alike(
+    removed: Sequence[SourceName], added: Sequence[SourceName]
+) -> list[tuple[SourceName, SourceName]]:
+    """Return the pairs of a removed and an added name in which the same words are replaced as in another pair.
+
+    Names that such an edit joins in two ways are left out.
+    """
+    edits: dict[Hashable, list[tuple[SourceName, SourceName]]] = {}
+    if 1 < len(removed) * len(added) <= _MAX_COMPARED_PAIRS:
+        for old, new in itertools.product(removed, added):
+            edit = name_edit(old.name, new.name)
+            is_replaced = isinstance(edit, tuple) and all(edit) and compute_similarity(old, new) >= _MIN_SIMILARITY
+            if is_replaced and _has_compatible_type(old, new):
+                edits.setdefault(edit, []).append((old, new))
+    pairs = [pair for alike in edits.values() if len(alike) > 1 for pair in alike]
+    counts = Counter(id(item) for pair in pairs for item in pair)
+    return [pair for pair in pairs if all(counts[id(item)] == 1 for item in pair)]
 
 
 def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:

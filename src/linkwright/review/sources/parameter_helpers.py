@@ -25,6 +25,9 @@ _ELEMENT = (
 """The pattern of a read element; ``{receiver}`` is the pattern of the variables with elements."""
 _CHAINED = re.compile(rf"\b(?:Get|GetNext|GetFirst|Find)Element\s*\([^()]*\)(?={_READ}\"(?P<own>\w+)\")")
 """An element that is read from another one in the same expression, such as ``sdf->GetElement("a")->Get<int>("b")``."""
+_CONSTANT_ELEMENT = rf"{{receiver}}{_READ}(?P<constant>[A-Za-z_]\w*)\s*(?:\[[^\[\]]*\]\s*)?(?=[,)])"
+_TEXTS = r"\b{name}\s*(?:\[[^\[\]]*\]\s*)?=?\s*(?:\{{\s*)?\"\w+\"(?:\s*,\s*\"\w+\")*\s*(?:,\s*)?\}}?\s*;"
+"""The definition of a constant text or of an array of them."""
 _DECLARED = re.compile(
     r"(?:\bsdf\s*::\s*Element(?:Const)?Ptr|\bshared_ptr\s*<\s*(?:const\s+)?sdf\s*::\s*Element(?:\s+const)?\s*>)"
     r"\s*(?:const\s*)?&?\s*(?P<name>\w+)\s*[=;,){(]"
@@ -104,7 +107,12 @@ def read_elements(text: str) -> Iterator[ReadElement]:
         text: the source without comments.
     """
     names = "".join(rf"|\b{name}\b" for name in sorted(_find_elements(text)))
-    matches = [*re.finditer(_ELEMENT.replace("{receiver}", f"(?:{_SDF}{names})"), text)]
+    receiver = f"(?:{_SDF}{names})"
+    matches = [*re.finditer(_ELEMENT.replace("{receiver}", receiver), text)]
+    for name in dict.fromkeys(re.findall(_CONSTANT_ELEMENT.replace("{receiver}", receiver), text)):
+        for definition in re.finditer(_TEXTS.format(name=name), text):
+            for item in re.finditer(r'"(\w+)"', definition[0]):
+                yield ReadElement(item[1], "", definition.start() + item.start(1))
     if matches:  # other libraries have elements, too
         matches += _CHAINED.finditer(text)
     for match in matches:

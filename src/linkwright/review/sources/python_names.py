@@ -66,6 +66,7 @@ _CALLBACK_KEYWORDS = {
 """The kinds of names with a callback as their third argument, and its name in ROS 1."""
 _ROUTE_METHODS = ("route", "get", "post", "put", "delete", "patch", "websocket")
 _NODE_CALLS = ("init_node", "create_node", "Node", "LifecycleNode")
+_PRIVATE_NAME = re.compile(r"rospy\.get_name\(\) \+ '/(?P<name>[\w/]+)'")
 _PART_OF_INTERFACE = re.compile(r"\w+\.(?:Goal|Result|Feedback|Request|Response)\Z")
 _RATE_CALLS = ("Rate", "create_rate", "Timer", "create_timer")
 _TRANSFORM_CALLS = {
@@ -484,7 +485,7 @@ class _Reader:
         if function == "get_parameter_or" and isinstance(value, ast.Call) and called_name(value).endswith("Parameter"):
             value = get_argument(value, 2, "value")
         is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
-        if is_ros1 and self._python.text(node) is None:
+        if is_ros1 and self._read_name(node) is None:
             return  # a different function with the same name
         resolved = None if value is None else self._python.resolved(value)
         details: tuple[tuple[Detail, str], ...] = ()
@@ -547,7 +548,7 @@ class _Reader:
         details: tuple[tuple[Detail, str], ...] = (),
         prefix: str = "",
     ) -> None:
-        text, full_type = self._python.text(node), ""
+        text, full_type = self._read_name(node), ""
         if kind is NameKind.PARAMETER:
             value = None if type_node is None else self._python.resolved(type_node)
             is_literal = isinstance(value, (ast.Constant, ast.List, ast.UnaryOp))
@@ -559,6 +560,11 @@ class _Reader:
             self._add_expression(kind, node, type_name, full_type)
         elif node is not None and text:
             self._names.add(SourceName(kind, prefix + text, type_name, self._python.span(node), details, full_type))
+
+    def _read_name(self, node: ast.expr | None) -> str | None:
+        """Return the name that an expression gives, or None. In ROS 1, one below that of the node is private."""
+        match = None if node is None else _PRIVATE_NAME.fullmatch(ast.unparse(node))
+        return self._python.text(node) if match is None else f"~{match['name']}"
 
     def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str, full_type: str = "") -> None:
         text = " ".join(ast.unparse(node).split())

@@ -10,7 +10,8 @@ from linkwright.review.breaking import frames_reason, message_frame_reason, name
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
 _HARMLESS_KINDS = (
-    *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
+    *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.GAZEBO_CLIENT),
+    *(NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
     *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS, NameKind.HARDWARE_ELEMENT),
 )
 _REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
@@ -67,6 +68,8 @@ def find_removal_reason(
         return phrase("values that launch files and parameter files give to {names} have no effect", names=text)
     if kind is NameKind.ELEMENT:
         return phrase("values that worlds and descriptions give to {names} have no effect", names=text)
+    if kind is NameKind.YAML_KEY:
+        return phrase("values that YAML files give to {names} have no effect", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
         return phrase("values that descriptions give to {names} have no effect", names=text)
     if kind is NameKind.FRAME:

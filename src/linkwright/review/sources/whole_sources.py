@@ -33,6 +33,7 @@ from linkwright.review.sources.python.methods import is_defined_by_others
 from linkwright.review.sources.python.package_imports import (
     find_failing_imports,
     is_certainly_uninstalled,
+    is_in_python_package,
     is_installed_package,
 )
 from linkwright.review.sources.python.undefined_uses import find_undefined_uses
@@ -96,7 +97,7 @@ class WholeSourcePair:
         side = self.new if self.file.old_path is None else self.old
         package = side.find_package(path)
         if path.endswith(PYTHON_SUFFIX):
-            is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
+            is_module = package is not None and is_in_python_package(side.version, package, path)
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
 

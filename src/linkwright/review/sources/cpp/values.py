@@ -19,7 +19,7 @@ _CONSTANT = re.compile(
 _ASSIGNED_TEXT = re.compile(
     r'\s*(?:=|(?P<open>[({]))\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;'
 )
-_ASSIGNED_EXPRESSION = re.compile(r"\s*=(?P<expression>[^;{}]+);")
+_ASSIGNED_EXPRESSION = re.compile(r"\s*(?:=(?P<expression>[^;{}]+)|\{(?P<braced>[^;{}]+)\})\s*;")
 _MAX_EXPRESSION_CHARACTERS = 80
 _TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
 _UNNAMED_VALUE = r"(?:-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
@@ -92,7 +92,7 @@ def find_assigned_expression(text: str, name: str, position: int) -> str | None:
         position: the offset of the place.
     """
     assigned = _find_last_assignment(text, name, position, _ASSIGNED_EXPRESSION)
-    expression = "" if assigned is None else " ".join(assigned["expression"].split())
+    expression = "" if assigned is None else " ".join((assigned["expression"] or assigned["braced"]).split())
     return expression if 0 < len(expression) <= _MAX_EXPRESSION_CHARACTERS else None
 
 

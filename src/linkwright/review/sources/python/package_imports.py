@@ -21,6 +21,8 @@ from linkwright.xacro.cache import read_document
 
 PACKAGE_FILE = "__init__.py"
 _SETUP_BUILD_TYPE = "ament_python"
+_INSTALLING = "ament_python_install_package"
+"""The command of CMake that installs a Python package with all folders below it."""
 _UNCERTAIN_ARGUMENTS = frozenset({"packages", "package_dir", "py_modules", "**"})
 """The arguments of ``setup`` that may install modules of other folders, if their values are computed."""
 
@@ -72,6 +74,20 @@ def is_installed_module(version: Version, package: str | None, path: str) -> boo
         PurePosixPath(package) / part / name for name in find_python_packages(version, package) for part in ("", "src")
     ]
     return any(file.is_relative_to(folder) for folder in folders)
+
+
+def is_in_python_package(version: Version, package: str, path: str) -> bool:
+    """Return whether a module is in a Python package, or in a folder below one that its build file installs whole.
+
+    Args:
+        version: the version of the repository.
+        package: the folder of the ROS package.
+        path: the path of the module.
+    """
+    folders = PurePosixPath(path).relative_to(package).parents[:]
+    if _INSTALLING not in version.text((PurePosixPath(package) / "CMakeLists.txt").as_posix()):
+        folders = folders[:1]  # setup.py lists the folders
+    return any((version.file(package) / folder / "__init__.py").is_file() for folder in folders)
 
 
 def is_certainly_uninstalled(version: Version, package: str, path: str) -> bool:

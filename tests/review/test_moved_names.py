@@ -1,0 +1,66 @@
+"""Topics and services that move from one node of a package to another one."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+NODE = """import rospy
+from std_msgs.msg import Float32
+{}
+
+
+rospy.init_node("{}")
+{}
+"""
+LEFT = 'left = rospy.Publisher("left", Float32, queue_size=1)'
+RIGHT = 'right = rospy.Publisher("right", Float32, queue_size=1)'
+
+
+def make(name: str, code: str, module: str = "") -> str:
+    return NODE.format(module, name, code)
+
+
+@pytest.fixture
+def find_lines(repository, compare):
+    """Review other versions of two nodes, and return the sentences about the first one and the breaking ones."""
+
+    def run(old: dict[str, str], new: dict[str, str]):
+        repository.commit({**MANIFEST, **{f"arm/src/{name}": text for name, text in old.items()}})
+        repository.write({f"arm/src/{name}": text for name, text in new.items()})
+        result = compare(repository)
+        found = [item for item in result.subjects if item.path == "arm/src/drive.py"]
+        return [sentence for item in found for sentence in sentences(item)], breaking(result)
+
+    return run
+
+
+def test_topics_that_move_to_an_added_node_are_told(find_lines):
+    lines, broken = find_lines(
+        {"drive.py": make("drive", f"{LEFT}\n{RIGHT}")},
+        {"drive.py": make("drive", "x = 1"), "wheels.py": make("wheels", f"{LEFT}\n{RIGHT}")},
+    )
+    assert "publishers moved to 'arm/src/wheels.py': 'left' (Float32), 'right' (Float32)" in lines
+    assert broken == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ({"drive.py": make("drive", LEFT)}, {"drive.py": make("drive", "import wheels"), "wheels.py": LEFT}),
+        (
+            {"drive.py": make("drive", LEFT), "wheels.py": make("wheels", LEFT)},
+            {"drive.py": make("drive", ""), "wheels.py": make("wheels", f"{LEFT}\nx = 1")},
+        ),
+        (
+            {"drive.py": make("drive", LEFT)},
+            {"drive.py": make("drive", "", "import wheels"), "wheels.py": make("wheels", LEFT)},
+        ),
+    ],
+)
+def test_topics_of_modules_and_of_other_nodes_do_not_move(find_lines, old, new):
+    lines, _ = find_lines(old, new)
+    assert not any("moved to" in line for line in lines)
