@@ -171,9 +171,10 @@ def _make_required_reason(pair: PartPair, macro: MacroOutline, names: Sequence[s
     """Return why parameters without a default are breaking, with calls of the repository that do not pass them."""
     values = [name for name in names if not name.startswith("*")]
     places = _find_places(pair, macro, lambda call: any(name not in call.attributes for name in values))
-    if places is None:
-        return phrase("calls that do not pass it cannot be expanded")
-    return phrase("calls that do not pass it cannot be expanded, such as {places}", places=places)
+    text = counted(
+        "calls that do not pass it cannot be expanded", "calls that do not pass them cannot be expanded", len(names)
+    )
+    return text if places is None else phrase("{text}, such as {places}", text=text, places=places)
 
 
 def _find_places(pair: PartPair, macro: MacroOutline, is_left: Callable[[Element], bool]) -> Phrase | None:
