@@ -332,3 +332,22 @@ def test_a_removed_launch_file_is_told_with_what_it_started(repository, compare)
     assert breaking(compare(repository)) == [
         "launch file removed: node 'cam/driver', include of '$(find arm)/launch/b.launch' (name left)"
     ]
+
+
+@pytest.mark.parametrize(("use", "is_unused"), [("", True), ("[port]", False)])
+def test_argument_of_an_added_python_file_whose_name_nothing_uses_is_unused(repository, compare, use, is_unused):
+    text = f"""from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    port = LaunchConfiguration("port", default="/dev/ttyUSB0")
+    driver = Node(package="arm", executable="driver", arguments={use or "[]"})
+    return LaunchDescription([DeclareLaunchArgument("port", default_value="/dev/ttyUSB0"), driver])
+"""
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({"arm/launch/arm.launch.py": text})
+    (line,) = sentences(subject(compare(repository), "arm/launch/arm.launch.py"))[:1]
+    assert ("argument 'port' (default /dev/ttyUSB0, unused)" in line) is is_unused

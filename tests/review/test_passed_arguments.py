@@ -120,3 +120,36 @@ def test_an_argument_that_an_included_file_never_had_is_told_once(repository, co
     repository.commit({"lamp/package.xml": MANIFEST, "lamp/launch/a.launch": ROS1, "lamp/launch/b.launch": call})
     repository.write({"lamp/launch/b.launch": call.replace('value="1"', 'value="2"')})
     assert not [line for line in breaking(compare(repository)) if line.startswith("passes")]
+
+
+CHOSEN = """<launch>
+  <arg name="robot" default="arm"/>
+  <include file="$(find lamp)/launch/$(arg robot)/{file}">{arguments}</include>
+</launch>
+"""
+GRIP = '<launch><arg name="grip" default="left"/></launch>'
+
+
+@pytest.mark.parametrize(
+    ("file", "other", "is_found"),
+    [
+        ("$(arg robot).gazebo.launch", "<launch/>", True),
+        ("start.launch", "<launch/>", True),
+        ("start.launch", GRIP, False),
+        ("$(arg robot)_$(arg side).launch", "<launch/>", False),
+    ],
+)
+def test_argument_that_a_file_of_another_value_does_not_declare_makes_the_include_fail_with_that_value(
+    repository, compare, file, other, is_found
+):
+    files = {"lamp/package.xml": MANIFEST, "lamp/launch/b.launch": CHOSEN.format(file=file, arguments="")}
+    for robot, text in (("arm", GRIP), ("leg", other)):
+        names = (f"{robot}.gazebo.launch", "start.launch", f"{robot}_left.launch")
+        files |= {f"lamp/launch/{robot}/{name}": text for name in names}
+    repository.commit(files)
+    argument = '<arg name="grip" value="right"/>'
+    repository.write({"lamp/launch/b.launch": CHOSEN.format(file=file, arguments=argument)})
+    changes = [change for _, change in compare(repository).breaking_changes]
+    lines = [(str(change.sentence), str(change.reason)) for change in changes]
+    line = ("passes 'grip' to files that do not declare it", "the include fails with robot:=leg")
+    assert (line in lines) is is_found

@@ -300,3 +300,11 @@ def test_added_and_removed_sources_are_marked(repository, compare, is_added):
     assert f"<h2><code>a/run.py</code> ({state})</h2>" in as_html(result)
     if is_added:
         assert "#### <code>a/run.py</code> (added)\n" in as_markdown(result)
+
+
+@pytest.mark.parametrize("new_name", ["", "f" * 40])
+def test_title_of_the_page_and_of_the_comment_has_short_hashes(new_name):
+    review = Review("0123456789" * 4 + "^", new_name)
+    title = f"Robot review: 0123456789^ to {new_name[:10] or 'working tree'}"
+    assert f"<h1>{title}</h1>" in as_html(review)
+    assert f"### {title}\n" in as_markdown(review).replace("&#94;", "^")

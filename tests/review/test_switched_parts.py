@@ -81,3 +81,27 @@ def test_value_that_an_added_argument_brings_back_is_named_if_it_is_another_one(
     repository.write({PATH: new})
     (line,) = [line for line in sentences(subject(compare(repository), PATH)) if "publish" in line]
     assert line == "extension 'gazebo': plugin drive publish removed: true" + (end or "; now only with odometry:=false")
+
+
+@pytest.mark.parametrize("call", ['<xacro:lamps real="$(arg real)"/>', "<xacro:lamps/>"])
+def test_part_that_moves_behind_a_macro_with_an_argument_of_both_versions_names_the_argument(repository, compare, call):
+    argument = '<xacro:arg name="real" default="false"/><xacro:property name="is_real" value="$(arg real)"/>'
+    sensor = '<gazebo reference="base"><sensor name="eye" type="camera"><topic>eye</topic></sensor></gazebo>'
+    old = OLD.replace("</robot>", argument + sensor + "</robot>")
+    content = f'<xacro:if value="${{real}}">{sensor}</xacro:if>'
+    macro = f'<xacro:macro name="lamps" params="real:=false">{content}</xacro:macro>'
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, PATH: old})
+    repository.write({PATH: OLD.replace("</robot>", argument + macro + call + "</robot>")})
+    lines = sentences(subject(compare(repository), PATH))
+    (line,) = [line for line in lines if line.startswith("extension 'gazebo base' removed")]
+    assert line.endswith("; now only with real:=true") == ("$(arg real)" in call)
+
+
+def test_added_macro_of_a_file_of_both_versions_has_its_parameters_and_contents(repository, compare):
+    part = "arm_description/urdf/lamps.xacro"
+    text = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
+    macro = '<xacro:macro name="lamps" params="real:=false"><link name="lamp"/></xacro:macro>'
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, part: text.format("")})
+    repository.write({part: text.format(macro)})
+    lines = sentences(subject(compare(repository), part))
+    assert lines == ["macro 'lamps' added: parameters real:=false; makes link lamp"]

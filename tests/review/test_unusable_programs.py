@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences
+from tests.review.conftest import breaking, sentences
 
 SCRIPT = "#!/usr/bin/env python3\nprint('arm')\n"
 NODE = SCRIPT + "if __name__ == '__main__':\n    rclpy.init()\n    rclpy.spin(Arm())\n"
@@ -61,3 +61,15 @@ def test_script_that_starts_a_node_and_is_not_installed(repository, compare, tex
     repository.write({"arm/scripts/bend.py": text, **files})
     repository.root.joinpath("arm/scripts/bend.py").chmod(0o755 if is_executable else 0o644)
     assert (NOT_INSTALLED in list_lines(repository, compare, {})) is is_told
+
+
+@pytest.mark.parametrize("name", ["bend.py", "bend_fast.py"])
+def test_script_that_is_not_installed_although_a_launch_file_passes_its_name_to_another_one_is_breaking(
+    repository, compare, name
+):
+    files = {"arm/scripts/a.py": SCRIPT, "arm/CMakeLists.txt": BUILD.format("scripts/a.py")}
+    launch = '<launch>\n  <include file="arm.launch.xml"><arg name="program" value="{}"/></include>\n</launch>\n'
+    repository.commit({"arm/package.xml": MANIFEST, **files})
+    repository.write({"arm/scripts/bend.py": SCRIPT, "arm/launch/bend.launch.xml": launch.format(name)})
+    line = f"{NOT_INSTALLED}; arm/launch/bend.launch.xml starts it"
+    assert (line in breaking(compare(repository))) is (name == "bend.py")

@@ -45,6 +45,8 @@ _SECONDARY_COMMAND = re.compile(
     r"|[{}]|\w+ ?\(\) ?\{?|(?:fi|done|else|then|do|esac);?"
 )
 """A line of a script that writes a message, waits, tests a condition, or has no command."""
+_WORD = re.compile(r"""(?:"[^"]*"|'[^']*'|[^\s"']|["'])+""")
+"""A word of a command, in which a quoted text stays whole."""
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
@@ -87,14 +89,29 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         return phrase("{old} -> {new}", old=before, new=after)
     changed = list(_take_changed_commands(removed, added))
     is_short = len(removed) + len(added) <= _MAX_LINES
-    return _format_lines(_list_lines(added, is_short=is_short), _list_lines(removed, is_short=is_short), changed)
+    is_script = is_shell_script(versions.new, file.new_path)
+    texts = (_list_lines(lines, is_short=is_short, is_script=is_script) for lines in (added, removed))
+    return _format_lines(*texts, changed)
 
 
-def _list_lines(lines: list[str], *, is_short: bool) -> Phrase | str:
+def _list_lines(lines: list[str], *, is_short: bool, is_script: bool) -> Phrase | str:
     """Return lines in quotes: all of a short list, or the first ones of a long list; empty if there are none."""
     if is_short:
         return joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines])
-    return _format_first(lines) if lines else ""
+    if not lines:
+        return ""
+    return _format_commands(lines, _MAX_SHOWN, _MAX_SHORT_LENGTH) if is_script else _format_first(lines)
+
+
+def _format_commands(lines: Sequence[str], limit: int, max_length: int) -> Phrase:
+    """Return the commands of a long script that start programs of ROS or Python, and the number of its other lines."""
+    commands = [line for line in lines if _find_rank(line) == 0]
+    shown = commands[: count_shown(len(commands), limit)]
+    texts: list[Phrase | str] = [f"`{shorten(line, max_length)}`" for line in shown]
+    rest = len(lines) - len(shown)
+    if rest and shown:
+        texts.append(counted("{count} more line", "{count} more lines", rest))
+    return joined(texts) if shown else counted("{count} line", "{count} lines", rest)
 
 
 def _take_changed_commands(removed: list[str], added: list[str]) -> Iterator[Phrase]:
@@ -103,9 +120,9 @@ def _take_changed_commands(removed: list[str], added: list[str]) -> Iterator[Phr
     A command with the same words in another order is not a change of words.
     """
     for old in list(removed):
-        words = old.split()
+        words = _WORD.findall(old)
         for new in added:
-            new_words = new.split()
+            new_words = _WORD.findall(new)
             is_long = max(len(old), len(new)) > _MAX_LINE_LENGTH and words[0] == new_words[0]
             gained, lost = Counter(new_words) - Counter(words), Counter(words) - Counter(new_words)
             share = 1 - (gained.total() + lost.total()) / (len(words) + len(new_words))
@@ -133,8 +150,8 @@ def list_commands(version: Version, path: str) -> Phrase | None:
     if not is_unit and not is_shell_script(version, path):
         return None
     lines = list_started_programs(version, path) if is_unit else [*split_content_lines(version.text(path))]
-    if len(lines) > _MAX_LINES:
-        lines.sort(key=_find_rank)
+    if len(lines) > _MAX_LINES and not is_unit:
+        return _format_commands(lines, _MAX_LINES, _MAX_COMMAND_LENGTH)
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
 
 

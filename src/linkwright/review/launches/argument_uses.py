@@ -12,7 +12,8 @@ USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
 _COMPUTED_USE = re.compile(r"\bLaunchConfiguration\(\s*(?![\"'\s])|\blaunch_configurations\b(?!\[[\"'])")
 """A use of an argument whose name a Python file computes."""
-
+_READING = re.compile(r"^[ \t]*(?P<name>\w+)[ \t]*=[ \t]*LaunchConfiguration\([^()\n]*\)[ \t]*$", re.MULTILINE)
+"""A statement that assigns an argument to a name."""
 _DEFAULTED_ARGUMENT = re.compile(r"\bLaunchConfiguration\(\s*[\"'](?P<name>[\w./-]+)[\"']\s*,\s*default\s*=")
 
 
@@ -28,8 +29,18 @@ def uses_argument(file: Path, name: str, entries: Sequence[Entry], *, is_declare
     others = [entry for entry in entries if entry.kind != "argument" or entry.name != name]
     if not is_declared:
         return is_used(name, others)
-    text = read_code(file)
+    text = _drop_unused_readings(read_code(file))
     return is_used(name, others) or may_use(text, name) or _COMPUTED_USE.search(text) is not None
+
+
+def _drop_unused_readings(text: str) -> str:
+    """Return a Python file without the assignments of arguments to names that nothing uses."""
+
+    def drop(match: re.Match[str]) -> str:
+        is_used_later = len(re.findall(rf"(?<![\w\"'.]){match['name']}(?![\w\"'])", text)) > 1
+        return match[0] if is_used_later else ""
+
+    return _READING.sub(drop, text)
 
 
 def may_use(text: str, name: str) -> bool:

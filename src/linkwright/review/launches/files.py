@@ -59,6 +59,7 @@ from linkwright.review.launches.python.builders import separate_builders
 from linkwright.review.launches.python.conditions import report_object_tests
 from linkwright.review.launches.python.imports import compare_imports
 from linkwright.review.launches.python.object_texts import report_object_texts
+from linkwright.review.launches.python.old_keywords import report_old_keywords
 from linkwright.review.launches.python.other_code import drop_common_parts, outside
 from linkwright.review.launches.python.undefined import report_undefined_names
 from linkwright.review.launches.reading import read_outline
@@ -157,6 +158,7 @@ def compare_launch_files(pair: FilePair) -> None:
             compare_imports(pair)
             report_object_tests(pair)
             report_object_texts(pair)
+            report_old_keywords(pair)
         report_undefined_names(pair)
     failure = find_failure(pair.versions.old, pair.old_path, outlines[0])
     if failure is not None or _is_refused_by_default(old):

@@ -30,7 +30,7 @@ from linkwright.review.parts.properties import compare_properties
 from linkwright.review.parts.readings import compare_readings
 from linkwright.review.parts.unreadable_includes import includes_unreadable_file
 from linkwright.review.parts.unused_parts import is_unused_part
-from linkwright.review.parts.written_contents import format_written_contents, summarize_macro
+from linkwright.review.parts.written_contents import MAX_MACROS, format_added_macro, format_written_contents
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
@@ -40,8 +40,6 @@ _XACRO = ".xacro"
 _SEMANTIC = ".srdf.xacro"
 _UNREADABLE = "can no longer be read: {reason}"
 """The change to a robot whose new version fails to expand."""
-_MAX_MACROS = 4
-"""The maximum number of added macros of a file that are shown with their contents."""
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal elements of a renamed macro."""
 
@@ -283,13 +281,11 @@ def _report_added_macros(outline: Outline, find_others: Callable[[str], Sequence
         find_others: a function that returns the other files which define a macro.
     """
     macros = list(outline.macros.values())
-    if len(macros) > _MAX_MACROS:
-        yield Change(phrase("macro '{name}' added", name=macros[0].name), other_names=tuple(outline.macros)[1:])
+    if len(macros) > MAX_MACROS:
+        yield Change(format_added_macro(macros[0], shows_contents=False), other_names=tuple(outline.macros)[1:])
         return
     for macro in macros:
-        text = phrase("macro '{name}' added", name=macro.name)
-        contents = summarize_macro(macro)
-        text = phrase("{change}: {contents}", change=text, contents=contents) if contents else text
+        text = format_added_macro(macro, shows_contents=True)
         others = find_others(macro.name)
         if others:
             text = phrase("{change}; also defined by {names}", change=text, names=joined_first(others, MAX_NAMES))

@@ -10,11 +10,13 @@ from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
 from linkwright.review.parts.default_values import collect_new_values
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
+from linkwright.review.parts.macro_parameters import format_default, format_parameter, has_default
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
 from linkwright.review.parts.undefined_names import find_lost_definitions, find_undefined_names, find_unmet_condition
 from linkwright.review.parts.unused_arguments import is_unused_argument
+from linkwright.review.parts.written_contents import MAX_MACROS, format_added_macro
 from linkwright.review.texts.list_changes import change_text
 from linkwright.review.texts.merging import name_edit
 from linkwright.xacro.macros import Parameter
@@ -32,12 +34,16 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
         graphs: the includes of both versions.
         renamed: the new names of macros, by their old names.
     """
+    added: list[MacroOutline] = []
     for name, macro in pair.new.macros.items():
         if name in pair.old.macros:
             _compare_parameters(pair, pair.old.macros[name], macro)
             _report_undefined_names(pair, graphs.new, pair.old.macros[name], macro)
         elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
-            pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
+            added.append(macro)
+    for macro in added:
+        text = format_added_macro(macro, shows_contents=len(added) <= MAX_MACROS)
+        pair.add(text, None, macro.element)
     lost = find_lost_definitions(graphs, pair)
     if lost:
         text = phrase("no longer defines {names}, which its macros use", names=quoted_names(lost))
@@ -124,8 +130,8 @@ def _report_unpaired_parameters(
     pair: PartPair, old: MacroOutline, new: MacroOutline, removed: Sequence[str], added: Sequence[Parameter]
 ) -> None:
     """Report removed parameters, and added parameters with and without a default."""
-    required = [parameter.name for parameter in added if not _has_default(parameter)]
-    optional = [format_parameter(parameter) for parameter in added if _has_default(parameter)]
+    required = [parameter.name for parameter in added if not has_default(parameter)]
+    optional = [format_parameter(parameter) for parameter in added if has_default(parameter)]
     for names, change, reason in (
         (
             removed,
@@ -165,9 +171,10 @@ def _make_required_reason(pair: PartPair, macro: MacroOutline, names: Sequence[s
     """Return why parameters without a default are breaking, with calls of the repository that do not pass them."""
     values = [name for name in names if not name.startswith("*")]
     places = _find_places(pair, macro, lambda call: any(name not in call.attributes for name in values))
-    if places is None:
-        return phrase("calls that do not pass it cannot be expanded")
-    return phrase("calls that do not pass it cannot be expanded, such as {places}", places=places)
+    text = counted(
+        "calls that do not pass it cannot be expanded", "calls that do not pass them cannot be expanded", len(names)
+    )
+    return text if places is None else phrase("{text}, such as {places}", text=text, places=places)
 
 
 def _find_places(pair: PartPair, macro: MacroOutline, is_left: Callable[[Element], bool]) -> Phrase | None:
@@ -180,34 +187,19 @@ def _find_places(pair: PartPair, macro: MacroOutline, is_left: Callable[[Element
 def _compare_defaults(
     pair: PartPair, old_macro: MacroOutline, new_macro: MacroOutline, old: Parameter, new: Parameter
 ) -> None:
-    if _format_default(old) == _format_default(new):
+    if format_default(old) == format_default(new):
         return
     reason = None
-    if not _has_default(new):
+    if not has_default(new):
         change = phrase("parameter {name} no longer has a default", name=new.name)
         reason = _make_required_reason(pair, new_macro, [new.name])
-    elif not _has_default(old):
-        change = phrase("parameter {name} has the default {value}", name=new.name, value=_format_default(new))
+    elif not has_default(old):
+        change = phrase("parameter {name} has the default {value}", name=new.name, value=format_default(new))
     else:
         name = phrase("default of parameter {name}", name=new.name)
-        change = change_text(name, _format_default(old), _format_default(new))
+        change = change_text(name, format_default(old), format_default(new))
     text = phrase("macro '{name}': {change}", name=new_macro.name, change=change)
     pair.add(text, old_macro.element, new_macro.element, reason)
-
-
-def _has_default(parameter: Parameter) -> bool:
-    return parameter.default is not None or parameter.forward
-
-
-def _format_default(parameter: Parameter) -> str:
-    """Return a default as written, with single spaces."""
-    text = " ".join((parameter.default or "").split())
-    return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
-
-
-def format_parameter(parameter: Parameter) -> str:
-    """Return a parameter as written, with its default."""
-    return f"{parameter.name}:={_format_default(parameter)}" if _has_default(parameter) else parameter.name
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:

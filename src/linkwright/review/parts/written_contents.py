@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.parts.interface import format_parameter
+from linkwright.review.parts.macro_parameters import format_parameter
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, Item, MacroOutline, Outline, iterate_items
 from linkwright.review.plugins import format_plugins
 from linkwright.xmltree import Element
 
+MAX_MACROS = 4
+"""The maximum number of added macros of a file that are shown with their contents."""
 _MAX_CONTENTS = 20
 """The maximum number of elements of an added macro or file in a line."""
 _COMPONENTS: Mapping[str, Callable[[Phrase], Phrase]] = {
@@ -32,7 +34,14 @@ def format_written_contents(outline: Outline) -> Phrase | None:
     return joined_first(items, _MAX_CONTENTS) if items else None
 
 
-def summarize_macro(macro: MacroOutline) -> Phrase | None:
+def format_added_macro(macro: MacroOutline, *, shows_contents: bool) -> Phrase:
+    """Return the line about an added macro, also with its parameters and contents."""
+    text = phrase("macro '{name}' added", name=macro.name)
+    contents = _summarize_macro(macro) if shows_contents else None
+    return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
+
+
+def _summarize_macro(macro: MacroOutline) -> Phrase | None:
     """Return the parameters of a macro, and the included files and the elements in it; None if it has none."""
     items = _summarize_elements(macro.element)
     elements = joined_first(items, _MAX_CONTENTS) if items else None

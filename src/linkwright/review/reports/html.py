@@ -30,6 +30,7 @@ from linkwright.review.reports.sentences import (
     format_location,
     format_paths,
     format_repeated,
+    format_title,
     get_path_state,
     list_other_files,
 )
@@ -85,8 +86,7 @@ def as_html(review: Review) -> str:
 
     A slider reveals one version of each image over the other.
     """
-    new = review.new_name or localized(phrase("working tree"))
-    title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
+    title = format_title(review)
     scenes = Scenes(review.subjects)
     shown: dict[_ImageKey, str] = {}
     sections, code_sections = separate_code(divide_report(review))

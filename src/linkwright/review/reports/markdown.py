@@ -27,6 +27,7 @@ from linkwright.review.reports.sentences import (
     format_location,
     format_paths,
     format_repeated,
+    format_title,
     get_path_state,
     list_other_files,
 )
@@ -74,8 +75,7 @@ def _format_omission(count: int) -> Phrase:
 
 
 def _format_heading(review: Review) -> str:
-    new = review.new_name or localized(phrase("working tree"))
-    title = _escape(phrase("Robot review: {old} to {new}", old=review.old_name, new=new))
+    title = _escape(format_title(review))
     return f"### {title}\n\n{_escape(format_summary(review))}"
 
 

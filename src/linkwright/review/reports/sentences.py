@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted, quoted_names
+from linkwright.diagnostics.translation import localized
 from linkwright.review.argument_sets import ARGUMENT, find_distinct_arguments
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject, SubjectKind, ViewImages
 from linkwright.review.other_files import group_files
 from linkwright.review.texts.excerpts import shorten
 from linkwright.review.texts.numbered_names import find_runs
 
+_HASH = re.compile(r"\b[0-9a-f]{40}\b")
+_HASH_CHARACTERS = 10
 _MAX_NAMES = 24
 """The maximum number of other links or joints that a line names."""
 _MAX_BREAKING_NAMES = 12
@@ -30,6 +34,14 @@ _MAX_REPEATED_CASES = 40
 """The maximum number of characters of argument sets that several lines in succession repeat."""
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
+
+
+def format_title(review: Review) -> Phrase:
+    """Return the title of a report, with the first characters of the hashes of commits."""
+    old, new = (
+        _HASH.sub(lambda match: match[0][:_HASH_CHARACTERS], name) for name in (review.old_name, review.new_name)
+    )
+    return phrase("Robot review: {old} to {new}", old=old, new=new or localized(phrase("working tree")))
 
 
 class Repeat(NamedTuple):

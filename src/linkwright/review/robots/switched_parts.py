@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import islice
@@ -13,7 +14,14 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.descriptions.pairs import Pair
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.robots.cases import MAX_SWITCHES, OPPOSITES, Case, find_opposites, list_unused_arguments, try_read
+from linkwright.review.robots.cases import (
+    MAX_SWITCHES,
+    OPPOSITES,
+    Case,
+    find_opposites,
+    list_unused_arguments,
+    try_read,
+)
 
 _MAX_COMPARED = 3
 """The maximum number of values of arguments to try because a condition compares them."""
@@ -21,6 +29,7 @@ _CONTENTS = "{change}: {contents}"
 """The form of the line about a removed element of an extension."""
 _SHAPE = " geometry"
 """The property with the shape of a visual or collision, after its number."""
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _Part = tuple[str, str, str]
 """The kind of an object, its name and the property; the latter is empty for the whole object."""
 
@@ -77,10 +86,12 @@ class SwitchedParts:
             return
         old_arguments = case.old.expansion.arguments.keys() - list_unused_arguments(case.old)
         added = {name: value for name, value in case.new.expansion.arguments.items() if name not in old_arguments}
-        switched = list(find_opposites(self._pair.versions.new, case.new, added).items())
+        version = self._pair.versions.new
+        switched = list(find_opposites(version, case.new, added).items())
+        switched += find_opposites(version, case.new, self._find_named_arguments(case.new, added)).items()
         switched += islice(dict.fromkeys(self._find_compared_values(case.new, added)), _MAX_COMPARED)
         for name, value in switched[:MAX_SWITCHES]:
-            model = self._pair.versions.new.model(self._pair.new_path, {**case.models.new.values, name: value})
+            model = version.model(self._pair.new_path, {**case.models.new.values, name: value})
             new = try_read(model)
             new_robot = getattr(new, "robot", None)
             if new_robot is not None:
@@ -90,6 +101,19 @@ class SwitchedParts:
                 values = {_make_key(difference): difference.new or "''" for difference in changed}
                 yield _Switch(f"{name}:={value}", lacking, values)
 
+    def _find_named_arguments(self, new: Description, added: Collection[str]) -> dict[str, str]:
+        """Return the arguments that both versions have and a changed file of the description names, with their values.
+
+        A part can move behind a condition on such an argument.
+        """
+        version = self._pair.versions.new
+        changed = {file.new_path for file in self._pair.versions.changed_files}
+        texts = (
+            version.text(path) for path in map(version.relative, new.files) if path is not None and path in changed
+        )
+        words = {word for text in texts for word in _WORD.findall(text)}
+        arguments = {} if new.expansion is None else new.expansion.arguments
+        return {name: value for name, value in arguments.items() if name not in added and name in words}
 
     def _find_compared_values(self, new: Description, added: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield the other values to which conditions compare added arguments, or changed files compare any argument."""

@@ -8,8 +8,9 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Location
-from linkwright.review.launches.programs.missing import RepositoryPackage
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.launches.programs.missing import RepositoryPackage, read_actions
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py")
@@ -25,8 +26,25 @@ def find_unusable_programs(versions: Versions, changed_files: Sequence[ChangedFi
             continue
         folder = versions.new.package_of(path)
         text = None if folder is None else _find_fault(versions.new, path, RepositoryPackage(versions.new, folder))
-        if text is not None:
-            yield path, Change(text, location=Location(path, 1, 1))
+        if text is None:
+            continue
+        location, starter = Location(path, 1, 1), _find_starter(versions.new, path)
+        if starter is None:
+            yield path, Change(text, location=location)
+        else:
+            text = phrase("{change}; {path} starts it", change=text, path=starter)
+            yield path, Change(text, Effect.BREAKING, phrase("the node does not start"), location)
+
+
+def _find_starter(version: Version, path: str) -> str | None:
+    """Return a launch file with an action that passes the name of a program to another file, which starts it."""
+    name = PurePosixPath(path).name
+    for file in find_launch_files(version):
+        if name in version.text(file) and any(
+            entry.kind == "include" and name in entry.settings.values() for entry in read_actions(version, file)
+        ):
+            return file
+    return None
 
 
 def _is_script(version: Version, path: str) -> bool:

@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, phrase, quoted_names
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.argument_uses import read_code
+from linkwright.review.launches.arguments.chosen_files import find_chosen_files
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -94,6 +95,57 @@ def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFi
             text = phrase("passes '{name}' to '{file}', which has no such argument", name=name, file=included_path)
             location = Location(file.new_path, entry.span.line, entry.span.column)
             yield file.new_path, Change(text, Effect.BREAKING, phrase("the include fails"), location)
+        yield from _check_chosen_files(versions, file.old_path, file.new_path)
+
+
+def _check_chosen_files(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
+    """Yield the includes of ROS 1 that fail with other values of the argument that chooses the file.
+
+    A file counts if the old version had it and did not refuse the include, and if another value chooses a file that
+    declares all passed arguments.
+    """
+    old = _find_chosen_refusals(versions.old, old_path)
+    old_refused = {path for _, files in old for path, names in files.values() if names}
+    for entry, files in _find_chosen_refusals(versions.new, new_path):
+        refused = {
+            word: names
+            for word, (path, names) in files.items()
+            if names and path not in old_refused and versions.old.file(path).is_file()
+        }
+        if not refused or all(names for _, names in files.values()):
+            continue
+        lacking = sorted(set().union(*refused.values()))
+        text = counted(
+            "passes {names} to files that do not declare it",
+            "passes {names} to files that do not declare them",
+            len(lacking),
+            names=quoted_names(lacking),
+        )
+        values = joined(list(refused)[:MAX_NAMES], last=" or ")
+        reason = phrase("the include fails with {values}", values=values)
+        yield new_path, Change(text, Effect.BREAKING, reason, Location(new_path, entry.span.line, entry.span.column))
+
+
+def _find_chosen_refusals(version: Version, path: str) -> list[tuple[Entry, dict[str, tuple[str, set[str]]]]]:
+    """Return the includes of ROS 1 with the files that one argument can choose, and the arguments that each refuses."""
+    outline = _try_read(version, path)
+    found = []
+    for entry in [] if outline is None or not outline.is_ros1 else outline.entries:
+        chosen = find_chosen_files(version, entry.name) if entry.kind == "include" else {}
+        passed = _list_passed(entry)
+        files: dict[str, tuple[str, set[str]]] = {}
+        for word, file in chosen.items():
+            included = _try_read(version, file)
+            if included is not None:
+                files[word] = file, passed - {other.name for other in included.entries if other.has_value}
+        found.append((entry, files))
+    return found
+
+
+def _list_passed(entry: Entry) -> set[str]:
+    """Return the names of the arguments that an include passes."""
+    names = {without_condition(name) for name in entry.settings if not name.startswith(ENVIRONMENT)}
+    return names - {CONDITION, NAMESPACE_OF_INCLUDED, PASSES_ALL_ARGUMENTS}
 
 
 def _find_refused(version: Version, path: str) -> dict[tuple[str, str], Entry]:
@@ -123,8 +175,7 @@ def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Itera
         file = actions.find_included_file(replace(entry, name=outline.resolve(entry.name)), version.file(path))
         included_path = None if file is None else version.relative(file)
         if included_path is not None:
-            names = {without_condition(name) for name in entry.settings if not name.startswith(ENVIRONMENT)}
-            yield entry, included_path, names - {CONDITION, NAMESPACE_OF_INCLUDED, PASSES_ALL_ARGUMENTS}
+            yield entry, included_path, _list_passed(entry)
 
 
 def _try_read(version: Version, path: str) -> LaunchOutline | None:

@@ -268,7 +268,7 @@ def find_old_package_names(versions: Versions, changed_files: Sequence[ChangedFi
         text = versions.new.text(path)
         is_test = not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)
         reported: set[str] = set()
-        for entry in [] if is_test or not any(name in text for name in new_names) else _read(versions.new, path):
+        for entry in [] if is_test or not any(name in text for name in new_names) else read_actions(versions.new, path):
             for package in _find_named_packages(entry):
                 if package not in new_names or package in reported:
                     continue
@@ -360,10 +360,10 @@ def find_packages(version: Version) -> dict[str, RepositoryPackage]:
 
 def _read_nodes(version: Version, path: str) -> list[Entry]:
     """Return the nodes of a launch file; none if it cannot be read."""
-    return [entry for entry in _read(version, path) if entry.kind in PROGRAM_KINDS]
+    return [entry for entry in read_actions(version, path) if entry.kind in PROGRAM_KINDS]
 
 
-def _read(version: Version, path: str) -> list[Entry]:
+def read_actions(version: Version, path: str) -> list[Entry]:
     """Return the actions of a launch file; none if it cannot be read."""
     try:
         return read_outline(version.file(path), version.root).entries

@@ -27,7 +27,12 @@ from linkwright.review.launches.python.node_settings import (
     split_remappings,
 )
 from linkwright.review.launches.python.substitution_texts import omit_program_search
-from linkwright.review.launches.python.syntax import find_missing_argument, find_name_and_value, find_unknown_argument
+from linkwright.review.launches.python.syntax import (
+    OLD_KEYWORDS,
+    find_missing_argument,
+    find_name_and_value,
+    find_unknown_argument,
+)
 from linkwright.review.launches.titles import shorten_command
 
 _PROCESS_CLASSES = ("ExecuteProcess", "ExecuteLocal")
@@ -39,8 +44,6 @@ _INCLUDING_FUNCTIONS = ("include_launch_py_description", "include_scoped_launch_
 """The functions of launch_pal that include a launch file by its package and the parts of its path."""
 ACTIONS = frozenset({*_INCLUDING_FUNCTIONS, *NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
-_ALIASES = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
-"""The names of arguments of nodes before ROS 2 Foxy."""
 _EMPTY_SCOPE = Scope()
 
 
@@ -75,7 +78,7 @@ class ActionReader:
         text = self.texts.text
         given = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
         given = {**find_keyword_values(call, self.texts), **given}
-        keywords = {_ALIASES.get(key, key): value for key, value in given.items()}
+        keywords = {OLD_KEYWORDS.get(key, key): value for key, value in given.items()}
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first_text, second_text = map(text, find_name_and_value(call, function))
         settings: dict[str, str] = {}

@@ -36,6 +36,8 @@ _KNOWN_ARGUMENTS = {
     "ExecuteProcess": _PROCESS_ARGUMENTS,
 }
 """All keyword arguments of a class of launch and launch_ros in any distribution; others raise an error."""
+OLD_KEYWORDS = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
+"""The new names of the arguments of nodes before ROS 2 Foxy. Galactic and later refuse the old ones."""
 _LAUNCH_PACKAGES = ("launch", "launch_ros")
 
 
