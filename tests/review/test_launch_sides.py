@@ -164,6 +164,17 @@ def test_a_name_that_an_added_node_has_now_is_not_lost(repository, compare, targ
     assert any(change.reason is not None for change in changes) is is_breaking
 
 
+@pytest.mark.parametrize(("kept", "is_breaking"), [("/base/odd", False), ("/base/goal", True)])
+def test_a_name_that_another_node_newly_has_is_not_lost(repository, compare, kept, is_breaking):
+    remap = '<remap from="aim" to="{}"/>'
+    text = f'<launch><node pkg="elsewhere" type="n" name="n">{remap}</node>{{}}</launch>'
+    switch = f'<node pkg="elsewhere" type="switch" name="switch">{remap}</node>'
+    repository.commit({"arm/launch/arm.launch": text.format("/base/goal", switch.format(kept))})
+    repository.write({"arm/launch/arm.launch": text.format("/base/first", switch.format("/base/goal"))})
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert any("/base/goal" in str(change.reason) for change in changes) is is_breaking
+
+
 REMAPPINGS = """<remap from="scan" to="left/scan"/><remap from="goal" to="left/goal"/>"""
 
 

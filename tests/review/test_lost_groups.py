@@ -35,6 +35,30 @@ def test_a_removed_group_of_parameters_is_breaking(repository, compare, group, f
     )
 
 
+ROBOT = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="lamp">
+  <xacro:property name="data" value="${{xacro.load_yaml('$(find lamp)/config/lamp.yaml')}}"/>
+  <link name="{}"/>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("files", "is_breaking"),
+    [
+        ({"lamp/urdf/lamp.urdf.xacro": ROBOT.format("base")}, False),
+        ({"lamp/urdf/lamp.urdf.xacro": ROBOT.format("${data['devices']['id']}")}, True),
+        ({"lamp/urdf/lamp.urdf.xacro": ROBOT.format("base"), "lamp/read.py": "devices = load()\n"}, True),
+        ({"lamp/urdf/lamp.urdf.xacro": ROBOT.format("base"), "lamp/read.py": "load('lamp.yaml')\n"}, True),
+    ],
+)
+def test_a_group_that_no_description_reads_from_a_file_for_descriptions_is_not_missed(
+    repository, compare, files, is_breaking
+):
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": REST + FLAT, **files})
+    repository.write({"lamp/config/lamp.yaml": REST})
+    assert any(line.startswith("devices removed") for line in breaking(compare(repository))) is is_breaking
+
+
 @pytest.mark.parametrize(("kept", "is_breaking"), [("", False), ("  - {name: spin, type: a/Slow}\n", True)])
 def test_a_group_of_a_plugin_that_its_list_loses_is_not_missed(repository, compare, kept, is_breaking):
     plugins = "behaviors:\n  - {name: back, type: a/Back}\n"

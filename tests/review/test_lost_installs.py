@@ -186,3 +186,11 @@ def test_description_that_newly_names_a_folder_which_is_not_installed(repository
     repository.write({path: OLD_ROBOT.replace("FILE", file)})
     text = "names files that 'arm' does not install: 'simulation/base.stl'"
     assert (text not in breaking(compare(repository))) is is_found
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("gains.yaml.orig", False), ("gains.txt", True)])
+def test_an_installed_backup_copy_is_not_missed(repository, compare, name, is_breaking):
+    files = {**FILES, "a/CMakeLists.txt": CMAKE, f"a/config/{name}": "gain: 1\n"}
+    repository.commit(files)
+    repository.write({f"a/config/{name}": None})
+    assert any("no longer installed" in line for line in breaking(compare(repository))) is is_breaking

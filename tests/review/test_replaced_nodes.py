@@ -135,3 +135,18 @@ def test_the_spawn_command_of_the_controller_manager_of_ros_1_starts_controllers
     assert found_breaking == changes
     (change,) = changes
     assert change.startswith("node 'controller_manager/controller_manager' of 'left'")
+
+
+NAVIGATION = '<node pkg="{0}" exec="{1}" name="{1}"><param name="rate" value="10"/><param name="id" value="0"/></node>'
+COMPONENT = """<load_composable_node target="box" if="$(var composed)">
+<composable_node pkg="smooth" plugin="smooth::Server" name="smoother">
+<param name="rate" value="10"/><param name="id" value="0"/></composable_node></load_composable_node>
+<arg name="composed" default="false"/>"""
+
+
+def test_a_component_beside_its_program_replaces_no_other_node(repository, compare):
+    old = NAVIGATION.format("recover", "recoveries")
+    new = '<node pkg="smooth" exec="smoother" name="smoother"/>' + COMPONENT
+    repository.commit({"arm/package.xml": MANIFEST, PATH: LAUNCH.format(old)})
+    repository.write({PATH: LAUNCH.format(new)})
+    assert not any("smooth::Server" in line for line in breaking(compare(repository)))

@@ -186,7 +186,7 @@ def _compute_replacement_score(
     if old_package == new_package and has_same_topics and name_similarity >= MIN_SIMILARITY:
         return 1.0 + name_similarity
     if _have_same_parameters(old, new) or have_same_names(old, new):
-        return 1.0 + similarity
+        return 0.0 if _has_other_partner(old, new, outlines) else 1.0 + similarity
     other_names = (old_package, new_package), (name or "", new.settings.get("name", ""))
     is_renamed = all(a == b or compute_name_similarity(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in other_names)
     is_similar = name_similarity >= _MIN_SIMILARITY_OF_PROGRAMS and (
@@ -212,6 +212,17 @@ def _have_same_parameters(old: Entry, new: Entry) -> bool:
     names = {name.removeprefix(PARAMETER) for name, _ in parameters[1]} - COMMON_PARAMETERS
     files = new.settings.get("parameters", "").count(".y")  # ".yaml" and ".yml"
     return parameters[0] == parameters[1] and len(names) + max(files - 1, 0) >= _MINCOMMON_PARAMETERS
+
+
+def _has_other_partner(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:
+    """Return whether a new node has the name of another node of the old file, or of a program besides its component."""
+    name = new.settings.get("name")
+    before = (entry for entry in outlines[0].entries if entry is not old)
+    beside = (entry for entry in outlines[1].entries if "::" in new.name and "::" not in entry.name)
+    return name is not None and any(
+        entry.kind == old.kind and name in (entry.settings.get("name"), _split_program_name(entry)[1])
+        for entry in (*before, *beside)
+    )
 
 
 def _have_same_namespace(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:

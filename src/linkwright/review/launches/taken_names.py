@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from linkwright.review.launches.matching import find_loaded_class
 from linkwright.review.launches.outlines import (
     NAMESPACE,
@@ -15,7 +17,9 @@ from linkwright.review.launches.programs.sides import Side, find_side
 
 
 def is_taken_over(entry: Entry, name: str, old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether a program that the old file does not start offers a name to which a node remapped its own.
+    """Return whether another program newly offers a name to which a node remapped its own.
+
+    The old file does not start the program, or remaps other names of it to this one.
 
     Args:
         entry: the node.
@@ -23,17 +27,30 @@ def is_taken_over(entry: Entry, name: str, old: LaunchOutline, new: LaunchOutlin
         old: the outline of the old file.
         new: the outline of the new file.
     """
-    known = {other.name for other in old.entries}
     resolved = old.resolve(name)
+    known = {
+        (other.name, setting)
+        for other in old.entries
+        for setting, value in other.settings.items()
+        if setting.startswith(REMAPPING) and old.resolve(value) == resolved
+    }
     return any(
-        _offers(other, resolved, entry, new)
+        _offers(other, resolved, entry, new, known)
         for other in new.entries
-        if other.kind in PROGRAM_KINDS and other.name not in known
+        if other.kind in PROGRAM_KINDS and other.name != entry.name
     )
 
 
-def _offers(other: Entry, name: str, entry: Entry, outline: LaunchOutline) -> bool:
-    """Return whether a node remaps a topic or service that it may offer to a name."""
+def _offers(other: Entry, name: str, entry: Entry, outline: LaunchOutline, known: Collection[tuple[str, str]]) -> bool:
+    """Return whether a node newly remaps a topic or service that it may offer to a name.
+
+    Args:
+        other: the node.
+        name: the name outside of the node.
+        entry: the node that had the name.
+        outline: the outline of the new file.
+        known: the programs and remappings to the name in the old file.
+    """
     namespaces = (outline.resolve(item.settings.get(NAMESPACE, "")).strip("/") for item in (entry, other))
     if not name.startswith("/") and len(set(namespaces)) > 1:
         return False
@@ -43,5 +60,5 @@ def _offers(other: Entry, name: str, entry: Entry, outline: LaunchOutline) -> bo
         and find_side(program, without_condition(setting).removeprefix(REMAPPING), outline.root)
         in (Side.OFFERS, Side.UNKNOWN)
         for setting, value in other.settings.items()
-        if setting.startswith(REMAPPING)
+        if setting.startswith(REMAPPING) and (other.name, setting) not in known
     )

@@ -72,6 +72,7 @@ from linkwright.review.sources.reasons import (
     is_used_by_others,
     make_reader_reason,
 )
+from linkwright.review.sources.separate_programs import is_in_uninstalled_program
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.statements.frame_changes import drop_told_frames
@@ -151,7 +152,9 @@ class _SourcePair(PairedNames):
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(
-                variants.align(self._rename_type(replace(before[name], type=shown.get(name, before[name].type))), item),
+                variants.align(
+                    self._rename_type(replace(before[name], type=shown.get(name, before[name].type)), item), item
+                ),
                 item,
                 has_other_class=has_other_class(before[name], item, old_names, new_names),
             )
@@ -210,8 +213,10 @@ class _SourcePair(PairedNames):
         removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
 
-    def _rename_type(self, item: SourceName) -> SourceName:
-        return replace(item, full_type=self.old.rename_type(item.full_type)) if item.full_type else item
+    def _rename_type(self, item: SourceName, new: SourceName) -> SourceName:
+        """Return an old name with the new name of the package of its type, unless the new source has the old one."""
+        is_renamed = bool(item.full_type) and item.full_type != new.full_type
+        return replace(item, full_type=self.old.rename_type(item.full_type)) if is_renamed else item
 
     def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:
         """Yield the changes to parameters that another changed source of the package declares now."""
@@ -335,12 +340,17 @@ class _SourcePair(PairedNames):
         sides = ((self.old, self.file.old_path), (self.new, self.file.new_path))
         return all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path)
 
+    def _was_not_installed(self) -> bool:
+        """Return whether the old version built the source only into programs that it did not install."""
+        path = self.file.old_path
+        return path is not None and is_in_uninstalled_program(self.old.version, self.old.find_package(path), path)
+
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
         is_used = items[0].kind in (*_DECLARED_KINDS, NameKind.IMPORT)
-        if not is_used and self._is_unreachable():
+        if not is_used and (self._is_unreachable() or self._was_not_installed()):
             return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]
@@ -368,9 +378,10 @@ class _SourcePair(PairedNames):
         if old_item.kind is NameKind.CLAIMED_INTERFACE:
             return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
-        is_scoped = old_item.name.startswith("/") != new_item.name.startswith("/")
-        if reason is not None and is_scoped and old_item.name.strip("/") == new_item.name.strip("/"):
-            return phrase(
+        if old_item.name.strip("/") == new_item.name.strip(
+            "/"
+        ):  # an absolute name that is relative now, or the reverse
+            return reason and phrase(
                 "if the node has a namespace, programs that use the name '{name}' do not find it", name=old_item.name
             )
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
@@ -520,7 +531,7 @@ class _SourcePair(PairedNames):
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
                 defaults = [names.defaults.get(item.name, "") for names in sources]
-                for text, reason, _ in compare_computed(self._rename_type(matching[0][0]), item, defaults):
+                for text, reason, _ in compare_computed(self._rename_type(matching[0][0], item), item, defaults):
                     yield self.make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:

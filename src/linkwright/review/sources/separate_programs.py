@@ -7,10 +7,16 @@ from collections.abc import Iterable
 from pathlib import PurePosixPath
 
 from linkwright.review.caching import cached_in_review
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.files.build.facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.versions import Version
 
+_INSTALLED_TARGETS = re.compile(
+    r"^[ \t]*(?i:install)\s*\(\s*TARGETS\s+([^)]*?)\s(?:DESTINATION|RUNTIME|LIBRARY|ARCHIVE|EXPORT|INCLUDES)\b",
+    re.MULTILINE,
+)
+"""The names in a command that installs targets, up to the first keyword."""
 _RVIZ_CLASS = re.compile(r"EXPORT_CLASS\s*\([^;)]*\brviz(?:_common)?::\w+\s*\)")
 """The export of a class that RViz loads, and no node of the package."""
 
@@ -39,6 +45,31 @@ def find_programs(version: Version, package: str, path: str) -> tuple[frozenset[
     programs = _find_programs(version, package)
     own = programs.get(path, frozenset())
     return own, frozenset().union(*programs.values()) - own
+
+
+@cached_in_review(maxsize=256)
+def is_in_uninstalled_program(version: Version, package: str | None, path: str) -> bool:
+    """Return whether a source is only in programs that its package of ament builds but does not install.
+
+    No launch file or user starts such a program by its package.
+
+    Args:
+        version: the version of the repository.
+        package: the folder of the package; None for a file outside of packages.
+        path: the path of the source.
+    """
+    facts = None if package is None else read_package_facts(version, package)
+    if package is None or facts is None or facts.routines or not PurePosixPath(path).is_relative_to(package):
+        return False
+    installed = _INSTALLED_TARGETS.findall(version.text(f"{package}/{CMAKE_FILE}".lstrip("/")))
+    if not installed or any("$" in names for names in installed):
+        return False
+    source = PurePosixPath(path).relative_to(package).as_posix()
+    targets = {name for name, parts in facts.targets.items() if source in parts.sources}
+    used = {fact.name for fact in facts.facts if fact.kind in (FactKind.EXECUTABLE, FactKind.LIBRARY)}
+    used |= {name for parts in facts.targets.values() for name in parts.libraries}
+    built = {fact.name for fact in facts.facts if fact.kind is FactKind.BUILT_TARGET}
+    return bool(targets) and targets <= built - used
 
 
 @cached_in_review(maxsize=16)

@@ -20,6 +20,9 @@ LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.
 """The ends of the names of launch files."""
 
 
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
+_PROGRAM_SUFFIXES = (".py", ".launch", ".launch.xml", ".cpp", ".hpp", ".h", ".sh")
+"""The ends of the names of other files that may read a parameter file."""
 _LIST_ITEM = re.compile(r"\[([^\[\]]+)\]")
 """The name of an item of a list in a path, such as ``behaviors[rotate].type``."""
 
@@ -42,7 +45,7 @@ def find_group_reason(
 
     A group that moved to a file which launch files load is not lost. No program reads the group of a plugin that its
     list loses, such as a recovery behavior of ``move_base``. A list is not a group. In ROS 2, no program gets
-    parameters without the name of a node.
+    parameters without the name of a node. A file that descriptions read is for them only.
 
     Args:
         pair: both versions of the file.
@@ -53,7 +56,7 @@ def find_group_reason(
     is_unread = name == _PARAMETERS or name in lost_items
     if is_unread or len(values) < _MIN_GROUP_SIZE or "." in name:
         return None
-    if any("[" in value or is_parameter(value) for value in values):
+    if any("[" in value or is_parameter(value) for value in values) or _is_unread_by_descriptions(pair, name):
         return None
     if is_of_lost_group(pair.versions, pair.new_path, name):
         return None
@@ -61,6 +64,22 @@ def find_group_reason(
     if any(path != pair.new_path and _has_group(pair, path, name, keys) for path in list_changed_files(pair)):
         return None
     return phrase("programs that read '{name}' from the file do not find it", name=name)
+
+
+def _is_unread_by_descriptions(pair: FilePair, name: str) -> bool:
+    """Return whether only descriptions of the old version name a file, and none of them names the group.
+
+    A description may pass the whole file to macros of another file, so that any description counts.
+    """
+    version, file_name = pair.versions.old, PurePosixPath(pair.old_path).name
+    texts = [version.text(path) for path in version.paths(_DESCRIPTION_SUFFIXES)]
+    others = (version.text(path) for path in version.paths(_PROGRAM_SUFFIXES))
+    word = re.compile(rf"\b{re.escape(name)}\b")
+    return (
+        any(file_name in text for text in texts)
+        and not any(file_name in text or word.search(text) for text in others)
+        and not any(word.search(text) for text in texts)
+    )
 
 
 def list_changed_files(pair: FilePair) -> list[str]:
