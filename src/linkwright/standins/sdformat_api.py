@@ -1,8 +1,8 @@
 """The Python bindings of libsdformat for programs that read worlds and models.
 
-Source: sdformat, ``python/src/sdf``. The objects are read-only views of the worlds and models that `linkwright.sdf` reads.
-Functions that change them, and functions whose values are objects of ``gz.math``, are not offered; calling one raises
-an error that lists the functions that are.
+Source: sdformat, ``python/src/sdf``. The objects are read-only views of the worlds and models that `linkwright.sdf`
+reads. Functions that change them, and functions whose values are objects of ``gz.math``, are not offered; calling one
+raises an error that lists the functions that are.
 """
 
 from __future__ import annotations
