@@ -218,6 +218,24 @@ async def test_gz_sim_launch_starts_server(
     assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": True}, [])]
 
 
+async def test_gz_command_is_listed_while_the_server_runs(
+    launch: Callable[..., Any], simulators: Simulators, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events: list[object] = []
+
+    class Recorder:
+        def __init__(self, command: list[str]) -> None:
+            events.append(command)
+
+        def close(self) -> None:
+            events.append("closed")
+
+    monkeypatch.setattr("linkwright.simulation.nodes.process_list.ListedCommand", Recorder)
+    launched = await launch(make_include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-v 4 -r {WORLD}"))
+    assert launched.succeeded, launched.err
+    assert events[:2] == [["gz", "sim", "-v", "4", "-r", str(WORLD)], "closed"]
+
+
 async def test_second_include_for_gui_starts_no_second_server(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:

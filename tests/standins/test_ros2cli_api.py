@@ -1,4 +1,4 @@
-"""The functions of ``ros2pkg.api`` and ``ros2topic.api`` that programs use."""
+"""The functions of ``ros2pkg.api``, ``ros2run.api`` and ``ros2topic.api`` that programs use."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from argparse import ArgumentTypeError
 import pytest
 import rclpy
 from ros2pkg.api import PackageNotFound, get_executable_paths, get_package_names, get_prefix_path
+from ros2run.api import MultipleExecutables, get_executable_path, run_executable
 from ros2topic.api import get_msg_class, get_topic_names, get_topic_names_and_types, positive_int, unsigned_int
 from std_msgs.msg import Int32, String
 
@@ -42,6 +43,53 @@ def test_packages_and_executables_are_listed(tmp_path):
         assert get_executable_paths(package_name="arm") == [str(program)]
         with pytest.raises(PackageNotFound):
             get_executable_paths(package_name="none")
+
+
+def make_package(folder, *programs):
+    """Create an unbuilt package that installs programs."""
+    (folder / "arm").mkdir()
+    (folder / "arm" / "package.xml").write_text("<package><name>arm</name></package>")
+    for program in programs:
+        path = folder / "arm" / program
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\nexit $1\n")
+        path.chmod(0o755)
+    (folder / "arm" / "CMakeLists.txt").write_text(
+        f"install(PROGRAMS {' '.join(programs)} DESTINATION lib/${{PROJECT_NAME}})\n"
+    )
+    return PackageFinder(start=folder, environment={})
+
+
+def test_programs_of_unbuilt_packages_are_found_and_run(tmp_path, capsys):
+    with use_finder(make_package(tmp_path, "scripts/move")):
+        path = get_executable_path(package_name="arm", executable_name="move")
+        assert path == str(tmp_path / "arm" / "scripts" / "move")
+        assert get_executable_path(package_name="arm", executable_name="none") is None
+        with pytest.raises(PackageNotFound):
+            get_executable_path(package_name="leg", executable_name="move")
+    assert run_executable(path=path, argv=["0"]) == 0
+    assert capsys.readouterr().out == ""
+    assert run_executable(path=path, argv=["3"], prefix=["/bin/sh"]) == 3
+    assert "[ros2run]: Process exited with failure 3" in capsys.readouterr().out
+    assert run_executable(path=None, argv=[]) == 1
+    assert "the program was not found" in capsys.readouterr().out
+
+
+def test_two_programs_of_a_name_are_an_error(tmp_path):
+    for folder in ("a", "b"):
+        program = tmp_path / "lib" / "arm" / folder / "move"
+        program.parent.mkdir(parents=True)
+        program.write_text("#!/bin/sh\n")
+        program.chmod(0o755)
+    (tmp_path / "share" / "arm").mkdir(parents=True)
+    (tmp_path / "share" / "arm" / "package.xml").write_text("<package><name>arm</name></package>")
+    marker = tmp_path / "share" / "ament_index" / "resource_index" / "packages" / "arm"
+    marker.parent.mkdir(parents=True)
+    marker.write_text("")
+    finder = PackageFinder(start=tmp_path, environment={"AMENT_PREFIX_PATH": str(tmp_path)})
+    with use_finder(finder), pytest.raises(MultipleExecutables) as raised:
+        get_executable_path(package_name="arm", executable_name="move")
+    assert len(raised.value.paths) == 2
 
 
 def test_topics_and_message_classes_are_found(node, capsys):

@@ -1,18 +1,30 @@
-"""The functions of ros2cli that programs use (``ros2pkg.api``, ``ros2topic.api``)."""
+"""The functions of ros2cli that programs use (``ros2pkg.api``, ``ros2run.api``, ``ros2topic.api``)."""
 
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import time
-from collections.abc import KeysView
+from collections.abc import KeysView, Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from linkwright.messages import get_message
-from linkwright.packages import PackageNotFoundError, get_package_prefix, get_packages_with_prefixes
+from linkwright.packages import (
+    PackageNotFoundError,
+    get_package_prefix,
+    get_package_share_directory,
+    get_packages_with_prefixes,
+    is_installed,
+)
+from linkwright.packages.programs.source_programs import find_source_programs
 from linkwright.standins.rclpy_api.naming import expand_topic_name, topic_or_service_is_hidden, validate_full_topic_name
 from linkwright.standins.rclpy_api.session import ok
 
 _POLL_INTERVAL_S = 0.1
+_RUN_PREFIX = "[ros2run]:"
 
 
 class PackageNotFound(Exception):
@@ -36,8 +48,56 @@ def get_prefix_path(package_name: str) -> str | None:
         return None
 
 
+class MultipleExecutables(Exception):
+    """Raised when a package has several executables with a name."""
+
+    def __init__(self, paths: Sequence[str]) -> None:
+        super().__init__(paths)
+        self.paths = paths
+
+
+def get_executable_path(*, package_name: str, executable_name: str) -> str | None:
+    """Return the path of a package's executable, or None if there is none.
+
+    Raises:
+        PackageNotFound: there is no such package.
+        MultipleExecutables: several executables have the name.
+    """
+    paths = get_executable_paths(package_name=package_name)
+    matches = [path for path in paths if os.path.basename(path) == executable_name]  # noqa: PTH119 - strings
+    if len(matches) > 1:
+        raise MultipleExecutables(matches)
+    return matches[0] if matches else None
+
+
+def run_executable(*, path: str | None, argv: Sequence[str], prefix: Sequence[str] | None = None) -> int:
+    """Run a program, wait until it ends, and return its exit status.
+
+    A failure is printed. In ROS, None as the path raises a TypeError; here it is a failure that is explained.
+
+    Args:
+        path: the path of the program, or None if `get_executable_path` found none.
+        argv: the arguments of the program.
+        prefix: a command that runs the program, such as a debugger.
+    """
+    if path is None:
+        print(f"{_RUN_PREFIX} the program was not found: it is not built here, or its package has no such program")
+        return 1
+    process = subprocess.Popen([*(prefix or ()), path, *argv])  # noqa: S603 - the caller's own program
+    while process.returncode is None:
+        with suppress(KeyboardInterrupt):  # the program receives the signal as well
+            process.wait()
+    status = process.returncode
+    if status != 0:
+        is_signal = os.name == "posix" and -status in signal.valid_signals()
+        print(_RUN_PREFIX, signal.strsignal(-status) if is_signal else f"Process exited with failure {status}")
+    return status
+
+
 def get_executable_paths(*, package_name: str) -> list[str]:
     """Return the paths of a package's executables in the folder ``lib`` of its install prefix.
+
+    For a package in sources, the paths are those of the scripts that a build would install.
 
     Raises:
         PackageNotFound: there is no such package.
@@ -45,6 +105,9 @@ def get_executable_paths(*, package_name: str) -> list[str]:
     prefix = get_prefix_path(package_name)
     if prefix is None:
         raise PackageNotFound(package_name)
+    share = Path(get_package_share_directory(package_name))
+    if not is_installed(share):
+        return sorted(str(script) for script in find_source_programs(share).scripts.values())
     executables: list[str] = []
     for folder, subfolders, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - strings, as in ros2pkg
         subfolders[:] = sorted(subfolder for subfolder in subfolders if not subfolder.startswith("."))

@@ -6,13 +6,15 @@ The arguments are those of the ros_gz_sim file of this name.
 
 import shlex
 
-from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, RegisterEventHandler, Shutdown
 from launch.conditions import IfCondition
+from launch.event_handlers import OnProcessExit, OnShutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
 from linkwright.simulation.nodes.command_line import parse_gz_server_command
+from linkwright.simulation.nodes.process_list import ListedCommand
 
 ARGUMENTS = {
     "gz_args": ("", "The command line of gz sim"),
@@ -25,19 +27,30 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the node of the server, or of the window's substitute if only that is requested."""
+    """Return the node of the server, or of the window's substitute if only that is requested.
+
+    While the node runs, the command is in the list of processes.
+    """
     arguments = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
     command = parse_gz_server_command(shlex.split(arguments))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)
+    node = Node(
+        package=command.package,
+        executable=command.executable,
+        output="screen",
+        arguments=command.ros_arguments,
+        parameters=[command.parameters],
+        on_exit=[Shutdown()] if required else None,
+    )
+    listed_command = ListedCommand(["gz", "sim", *shlex.split(arguments)])
+
+    def close(*_):
+        listed_command.close()
+
     return [
-        Node(
-            package=command.package,
-            executable=command.executable,
-            output="screen",
-            arguments=command.ros_arguments,
-            parameters=[command.parameters],
-            on_exit=[Shutdown()] if required else None,
-        )
+        RegisterEventHandler(OnProcessExit(target_action=node, on_exit=close)),
+        RegisterEventHandler(OnShutdown(on_shutdown=close)),
+        node,
     ]
 
 
