@@ -90,8 +90,8 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     changed = list(_take_changed_commands(removed, added))
     is_short = len(removed) + len(added) <= _MAX_LINES
     is_script = is_shell_script(versions.new, file.new_path)
-    texts = (_list_lines(lines, is_short=is_short, is_script=is_script) for lines in (added, removed))
-    return _format_lines(*texts, changed)
+    gained, lost = (_list_lines(lines, is_short=is_short, is_script=is_script) for lines in (added, removed))
+    return _format_lines(gained, lost, changed)
 
 
 def _list_lines(lines: list[str], *, is_short: bool, is_script: bool) -> Phrase | str:
