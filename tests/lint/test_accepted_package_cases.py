@@ -229,3 +229,24 @@ def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, existin
     (tmp_path / "src/p/launch/a.launch.py").write_text(launch)
     findings = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
     assert [finding.code for finding in findings] == codes
+
+
+@pytest.mark.parametrize(
+    ("path", "messages"),
+    [
+        ("share + '/config/a.yaml'", []),
+        ("os.path.join(share, 'config/a.yaml')", []),
+        ("share + 'config/a.yaml'", ["there is no '/' between the share folder of 'p' and 'config/a.yaml'"]),
+        ("f'{share}config/a.yaml'", ["there is no '/' between the share folder of 'p' and 'config/a.yaml'"]),
+        ("share + '_backup'", []),
+    ],
+)
+def test_path_below_a_share_folder_needs_a_separator(tmp_path, path, messages):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    for folder in ("launch", "config"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "config/a.yaml").write_text("a: 1\n")
+    launch = "import os\n\n\ndef generate_launch_description():\n    share = get_package_share_directory('p')\n"
+    (tmp_path / "launch/a.launch.py").write_text(f"{launch}    return {path}\n")
+    findings = examine_package(tmp_path, Settings(select=("LW842",))).diagnostics
+    assert [str(finding.message) for finding in findings] == messages

@@ -194,3 +194,15 @@ def test_python_file_with_a_launch_description_is_a_launch_file_whatever_its_nam
     repository.write({"arm/launch/simulation.py": None})
     (sentence,) = sentences(subject(compare(repository), "arm/launch/simulation.py"))
     assert sentence == line
+
+
+@pytest.mark.parametrize("text", ["path.__str__()", "path.as_posix()", "str(path)"])
+def test_the_text_of_a_path_object_is_the_path(review_changes, text):
+    launch = (
+        "from pathlib import Path\nfrom launch import LaunchDescription\n"
+        "from launch.actions import IncludeLaunchDescription\n\n\n"
+        "def generate_launch_description():\n"
+        "    path = Path(get_package_share_directory('arm')) / 'launch' / 'base.launch.py'\n"
+        "    return LaunchDescription([IncludeLaunchDescription(path)])\n"
+    )
+    assert review_changes("a.launch.py", launch, "Description(path)", f"Description({text})") == ([], [])

@@ -188,8 +188,10 @@ def test_description_that_newly_names_a_folder_which_is_not_installed(repository
     assert (text not in breaking(compare(repository))) is is_found
 
 
-@pytest.mark.parametrize(("name", "is_breaking"), [("gains.yaml.orig", False), ("gains.txt", True)])
-def test_an_installed_backup_copy_is_not_missed(repository, compare, name, is_breaking):
+@pytest.mark.parametrize(
+    ("name", "is_breaking"), [("gains.yaml.orig", False), ("__pycache__/arm.pyc", False), ("gains.txt", True)]
+)
+def test_installed_files_that_programs_leave_are_not_missed(repository, compare, name, is_breaking):
     files = {**FILES, "a/CMakeLists.txt": CMAKE, f"a/config/{name}": "gain: 1\n"}
     repository.commit(files)
     repository.write({f"a/config/{name}": None})

@@ -155,7 +155,11 @@ class LaunchedFileMissing(Rule):
     model = get_package_share_path('my_robot_description') / 'urdf/mbot.urdf'
     ```
 
-    in a package whose file is called `urdf/mbot_base.urdf`.
+    in a package whose file is called `urdf/mbot_base.urdf`, or a path that does not begin with `/`:
+
+    ```python
+    model = get_package_share_directory('my_robot_description') + 'urdf/mbot_base.urdf'
+    ```
 
     ## Use instead
 
@@ -182,6 +186,15 @@ class LaunchedFileMissing(Rule):
         self, shared_file: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject
     ) -> Iterator[Diagnostic]:
         if not _FILE_NAME.search(shared_file.path) or "*" in shared_file.path:
+            return
+        if not shared_file.has_separator:
+            message = phrase(
+                "there is no '/' between the share folder of '{package}' and '{path}'",
+                package=shared_file.package,
+                path=shared_file.path,
+            )
+            hint = phrase("begin the text with '/', or join both with os.path.join()")
+            yield self.report(message, span=shared_file.span, source=file.source, hint=hint)
             return
         is_own_package = shared_file.package == package.name
         share = package.folder if is_own_package else subject.finder.find(shared_file.package)

@@ -51,11 +51,19 @@ class StartedNode:
 
 @dataclass(frozen=True, slots=True)
 class SharedFile:
-    """A path in a share folder that a launch file constructs."""
+    """A path in a share folder that a launch file constructs.
+
+    Attributes:
+        package: the name of the package.
+        path: the path below the folder.
+        span: the location of the expression.
+        has_separator: whether a slash separates the folder from the path, which is outside of the folder without it.
+    """
 
     package: str
     path: str
     span: Span
+    has_separator: bool = True
 
 
 @dataclass
@@ -210,7 +218,10 @@ class _PathReader(ast.NodeVisitor):
             value = self._python_file.value(node)
             for path in (value,) if isinstance(value, SharePath) else _find_words(self._python_file, node):
                 if path.subpath:
-                    file = SharedFile(path.package, path.subpath.strip("/"), self._python_file.span(node))
+                    has_separator = path.subpath.startswith("/")
+                    file = SharedFile(
+                        path.package, path.subpath.strip("/"), self._python_file.span(node), has_separator
+                    )
                     self._facts.paths.append(file)
         self._path_depth += 1
         super().generic_visit(node)

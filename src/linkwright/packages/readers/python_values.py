@@ -250,9 +250,9 @@ class PythonFile:
             return join_path(arguments)
         if function_name == "joinpath" and isinstance(node.func, ast.Attribute):
             return join_path([self.value(node.func.value, depth + 1), *arguments])
-        if function_name in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
+        if function_name in ("as_posix", "__str__", "find") and isinstance(node.func, ast.Attribute):
             owner = self.value(node.func.value, depth + 1)
-            return owner if isinstance(owner, SharePath) or function_name == "as_posix" else UNKNOWN
+            return owner if isinstance(owner, SharePath) or function_name != "find" else UNKNOWN
         if name == "str" and len(arguments) == 1:
             return arguments[0]
         if function_name in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and arguments:

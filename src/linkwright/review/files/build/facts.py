@@ -91,8 +91,8 @@ BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT
 ANY_VERSION = "any version"
 """The value for a package without a required version."""
 
-_BACKUP_SUFFIXES = (".orig", ".rej", ".bak", ".swp", "~")
-"""The ends of the names of the copies that editors and merges leave."""
+_UNUSED_SUFFIXES = (".orig", ".rej", ".bak", ".swp", "~", ".pyc")
+"""The ends of the names of the files that editors, merges and Python leave."""
 _PACKAGE_MARKERS = "share/ament_index/resource_index/packages/"
 WITHOUT_NOTHING = ", without which nothing is built"
 """The end of the value for a package without which the build file returns."""
@@ -213,11 +213,11 @@ class BuildFacts:
     def offers_file(self, target: str) -> bool:
         """Return whether others may look for an installed file.
 
-        They do not look for files of tests, for backup copies of files, or for the marker of the package, which
-        ``ament_package()`` also installs.
+        They do not look for files of tests, for backup copies of files, for bytecode of Python, or for the marker of
+        the package, which ``ament_package()`` also installs.
         """
         is_own = target in self.test_files or target.startswith(_PACKAGE_MARKERS)
-        return not is_own and not target.endswith(_BACKUP_SUFFIXES)
+        return not is_own and not target.endswith(_UNUSED_SUFFIXES)
 
     def find_include_texts(self, target: str) -> set[str]:
         """Return the texts by which other packages include an installed header; empty if they are unknown."""

@@ -50,7 +50,7 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
         owner = python.resolved(node.func.value)
         is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
         return part(owner) if is_share else None
-    if function == "perform" and isinstance(node.func, ast.Attribute):
+    if function in ("perform", "__str__", "as_posix") and isinstance(node.func, ast.Attribute):
         return part(node.func.value)
     if function in _TEXT_METHODS and isinstance(node.func, ast.Attribute):
         return _format_text_method(part(node.func.value), function, node)
