@@ -329,6 +329,35 @@ def test_public_folder_of_nested_web_package_is_skipped(working_directory, manif
         assert folders == (["urdf", "public"] if is_reported else ["urdf"])
 
 
+def test_launch_file_has_the_findings_of_its_package_in_this_file(working_directory, capsys):
+    launch = "from launch import LaunchDescription\n\n\ndef generate_launch_description():\n"
+    launch += "    return LaunchDescription([Node(package='p', executable='x', parameters=[{}])])\n"
+    manifest = "<package format='3'><name>Big</name></package>"
+    paths = {name: launch.format(f"get_package_share_directory('Big') + '{name}.yaml'") for name in ("/a", "/b")}
+    write_files(
+        working_directory,
+        {"w/package.xml": manifest, "w/launch/a.launch.py": paths["/a"], "w/launch/b.launch.py": paths["/b"]},
+    )
+    assert main(["check", "w/launch/a.launch.py", "--format", "concise"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any("has no file 'a.yaml'" in line for line in lines)
+    assert all(line.startswith("w/launch/a.launch.py:") for line in lines)
+    for words in (["w"], ["--package", "w/launch/a.launch.py"], ["w/launch/a.launch.py", "w"]):
+        main(["check", *words, "--format", "concise"])
+        assert {line.partition(":")[0] for line in capsys.readouterr().out.splitlines()} >= {
+            "w/package.xml",
+            "w/launch/b.launch.py",
+        }
+
+
+def test_launch_file_outside_of_a_package_is_not_read_as_xml(working_directory, capsys):
+    write_files(working_directory, {"a.launch.py": "import os\n"})
+    assert main(["check", "a.launch.py"]) == 1
+    error = capsys.readouterr().err
+    assert "error[CLI302]: there is nothing to check in 'a.launch.py'" in error
+    assert "in a package, which has a package.xml" in error
+
+
 def test_empty_folder_is_an_error(working_directory, capsys):
     (working_directory / "empty").mkdir()
     assert main(["check", "empty"]) == 1

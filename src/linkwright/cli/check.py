@@ -61,8 +61,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="FILE|FOLDER|NAME:=VALUE",
         nargs="+",
-        help="URDF, xacro and SDF files, folders to search for descriptions, worlds and packages, and values "
-        "for the files' <xacro:arg>",
+        help="URDF, xacro and SDF files, launch files and other files of packages, folders to search for "
+        "descriptions, worlds and packages, and values for the files' <xacro:arg>",
     )
     parser.add_argument(
         "--package",
@@ -194,7 +194,7 @@ def _find_and_check(
         path_list = ", ".join(f"'{path}'" for path in paths)
         hint = phrase(
             "descriptions are .urdf, .sdf and .world files, and .xacro files with <robot name=...> that no other file"
-            " includes"
+            " includes; launch files and parameter files are checked in a package, which has a package.xml"
         )
         raise LinkwrightError(
             Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=path_list), hint=hint)
@@ -286,7 +286,7 @@ def _apply_fixes(
 
     def recheck_package(folder: Path, text: str | None) -> Iterable[Diagnostic]:
         overlay = None if text is None else Overlay({folder / MANIFEST: text})
-        return checker.check_package(folder, overlay)[0]
+        return targets.select(folder, checker.check_package(folder, overlay)[0])
 
     targets = find_targets(paths, with_packages=with_packages)
     checks = [(file, partial(recheck_file, file)) for file in targets.files]

@@ -93,6 +93,7 @@ class WorkingTreeChanges:
             tuple(file for name, file in names.items() if name in affected),
             tuple(folder for folder in targets.packages if _to_relative(folder, root) in changed_folders),
             targets.named_files,
+            targets.named_parts,
         )
 
 

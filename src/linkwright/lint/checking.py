@@ -140,7 +140,8 @@ class Checker:
             findings.add((*settings_findings, *select_relevant_findings(result, examined_files, targets, paths)))
         for folder in targets.packages:
             diagnostics, settings_findings = self.check_package(folder, contexts=contexts)
-            findings.add((*settings_findings, *select_relevant_package_findings(diagnostics, paths)))
+            relevant_findings = select_relevant_package_findings(targets.select(folder, diagnostics), paths)
+            findings.add((*settings_findings, *relevant_findings))
         return findings.all(), checked
 
     def check_file(

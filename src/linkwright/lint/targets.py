@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.lint.inclusions import Inclusion, folders_by_package, inclusions_in
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import IGNORE_MARKERS, MANIFEST, SKIPPED_FOLDERS
 from linkwright.xacro.cache import read_document
@@ -23,6 +23,8 @@ DESCRIPTION_SUFFIXES = (*_COMPLETE_SUFFIXES, _XACRO_SUFFIX)
 """The suffixes of files with descriptions, or with parts of them."""
 XML_SUFFIXES = (*DESCRIPTION_SUFFIXES, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
 """The suffixes of the XML files of a package."""
+_PACKAGE_SUFFIXES = (".py", ".yaml", ".yml", ".msg", ".srv", ".action", ".cmake", ".cfg", ".toml", "CMakeLists.txt")
+"""The ends of the names of files that are checked only as a part of their package."""
 _EMPTY_FILE_CODE = "XML105"
 _COMMENT = lazy_pattern(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _JAVASCRIPT_MANIFEST = "package.json"
@@ -47,11 +49,21 @@ class Targets:
         files: the descriptions, each once.
         packages: the folders of the packages to check, each once.
         named_files: the files that the user named individually.
+        named_parts: the only files whose findings are reported, for packages that the user did not name as a whole. The
+            paths are absolute, those of the files by the folder of the package.
     """
 
     files: tuple[Path, ...]
     packages: tuple[Path, ...]
     named_files: frozenset[Path] = frozenset()
+    named_parts: Mapping[Path, frozenset[Path]] = field(default_factory=dict)
+
+    def select(self, package: Path, findings: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+        """Return the findings about a package that are in the files which the user named."""
+        files = self.named_parts.get(package)
+        if files is None:
+            return findings
+        return [finding for finding in findings if finding.span and Path(finding.span.file).absolute() in files]
 
 
 def find_targets(
@@ -59,7 +71,8 @@ def find_targets(
 ) -> Targets:
     """Return the descriptions and packages to check for files and folders.
 
-    A file is always checked. The package of a file is checked only with `with_packages`.
+    A file is always checked. The package of a file is checked only with `with_packages`, except for the findings about
+    a file that has no meaning of its own, such as a launch file in Python or a parameter file.
 
     For a folder, the packages in and below the folder are checked, and the package that contains the folder. Of the
     descriptions, the files that no other file there includes are checked: ``.urdf``, ``.sdf`` and ``.world`` files, and
@@ -74,19 +87,29 @@ def find_targets(
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
+    parts: dict[Path, set[Path]] = {}
     for path in paths:
         if path.is_dir():
             found_files, found_packages = find_files_and_packages(path, DESCRIPTION_SUFFIXES, entered)
             files.update(dict.fromkeys(_find_entry_files(found_files, found_packages)))
             packages.update(dict.fromkeys(found_packages))
-        else:
+        elif not path.name.endswith(_PACKAGE_SUFFIXES) or not path.is_file():
             files[path] = None
     for path in paths:
+        package = enclosing_package((path if path.is_dir() else path.parent).absolute())
+        if package is None:
+            continue
         if with_packages or path.is_dir():
-            package = enclosing_package((path if path.is_dir() else path.parent).absolute())
-            if package is not None:
-                packages[package[1]] = None
-    return Targets(tuple(files), tuple(packages), frozenset(path for path in paths if not path.is_dir()))
+            packages[package[1]] = None
+        elif path not in files:
+            parts.setdefault(package[1], set()).add(path.absolute())
+    named_parts = {package: frozenset(names) for package, names in parts.items() if package not in packages}
+    return Targets(
+        tuple(files),
+        (*packages, *named_parts),
+        frozenset(path for path in paths if not path.is_dir()),
+        named_parts,
+    )
 
 
 def find_included_robots(folder: Path, entered: Collection[Path] = frozenset()) -> list[Path]:
