@@ -61,7 +61,7 @@ def test_class_whose_code_is_only_in_programs_is_private(repository, compare, ta
     ("manifest", "field"), [(MANIFEST["a/package.xml"], "time"), (PACKAGE_XML, "builtin_interfaces/Time")]
 )
 def test_added_interface_has_the_types_of_its_ros_version(repository, compare, manifest, field):
-    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": "project(a)\n"})
+    repository.commit({"a/package.xml": manifest})
     repository.write({"a/msg/State.msg": f"{field} stamp\n"})
     (subject,) = compare(repository).subjects
     assert sentences(subject) == [f"interface added: {field} stamp"]
