@@ -9,7 +9,7 @@ from linkwright.review.breaking import name_reason, names_reason, possible_name_
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
 from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.programs.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.programs.sides import Side, find_old_side, is_name_of_known_node, is_new_name
 from linkwright.review.launches.taken_names import is_taken_over
 
 _DESCRIPTION = ("robot_state_publisher/robot_state_publisher", "robot_description")
@@ -39,6 +39,8 @@ def find_node_remapping_reason(
         return None
     program = find_loaded_class(entry) or entry.name
     side = find_old_side(program, source, old_outline.root, new_outline.root)
+    if side is Side.UNKNOWN and any(is_name_of_known_node(target) for target in (old, new) if target is not None):
+        return None
     if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
