@@ -16,7 +16,8 @@ from linkwright.review.sources.reading import read_source_names
 
 _SUBSCRIBING_PROGRAM = re.compile(
     r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
-    r"move_base/|amcl/|gmapping/|robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
+    r"move_base/|amcl/|gmapping/|robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/|"
+    r"\w+_moveit_config/"
 )
 _INPUT_TOPIC = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
@@ -130,6 +131,19 @@ def is_name_of_known_node(name: str) -> bool:
     )
 
 
+def only_looks_up(program: str, parameter: str, root: Path | None) -> bool:
+    """Return whether the sources of a node use the value of a parameter only as the name of a frame to look up.
+
+    Args:
+        program: the package and the executable of the node.
+        parameter: the name of the parameter.
+        root: the folder of the repository, which may have the sources; None if it is unknown.
+    """
+    files = () if root is None else _list_sources(root, program.partition("/")[0])
+    names = (item for file in files for item in read_source_names(file).default_names)
+    return {item.kind for item in names if item.parameter.lstrip("~/.") == parameter} == {NameKind.FRAME_LOOKUP}
+
+
 def find_old_side(program: str, name: str, old_root: Path | None, new_root: Path | None) -> Side:
     """Return the side of a node before a change: others only use a name that the old sources offer.
 
@@ -216,12 +230,16 @@ def _lacks_name(name: str, modules: Iterable[Path]) -> bool:
 @cached_in_review(maxsize=64)
 def _read_package_kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of topics, services and actions in a package's sources, by name."""
+    return _collect_kinds(_list_sources(root, package))
+
+
+@cached_in_review(maxsize=64)
+def _list_sources(root: Path, package: str) -> tuple[Path, ...]:
+    """Return the sources of a package, at most as many as are read."""
     folder = find_package_folders(root).get(package)
-    if folder is None:
-        return {}
     suffixes = (*CPP_SUFFIXES, PYTHON_SUFFIX)
-    files = [file for file in sorted(folder.rglob("*")) if file.suffix in suffixes and file.is_file()]
-    return _collect_kinds(files[:_MAX_SOURCES])
+    files = () if folder is None else sorted(folder.rglob("*"))
+    return tuple(file for file in files if file.suffix in suffixes and file.is_file())[:_MAX_SOURCES]
 
 
 def _collect_kinds(files: Iterable[Path]) -> dict[str, set[NameKind]]:
