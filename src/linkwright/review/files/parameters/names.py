@@ -17,7 +17,7 @@ from linkwright.review.files.parameters.declared_types import has_recorded_type
 from linkwright.review.files.parameters.key_readers import KeyReaders
 from linkwright.review.files.parameters.replaced_classes import find_replaced_classes, is_below_any
 from linkwright.review.files.parameters.unread_plugins import is_unread_plugin
-from linkwright.review.files.parameters.yaml_values import YamlValue
+from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue
 from linkwright.review.texts.list_changes import EMPTY, list_items
 
 _FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
@@ -346,8 +346,11 @@ def has_different_type(old: YamlValue, new: YamlValue) -> bool:
 
 
 def find_type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
-    """Return the reason why a different type is breaking; None if the type is the same."""
-    if not has_different_type(old, new):
+    """Return the reason why a different type is breaking; None for the same type, or if no parameter had the old one.
+
+    No parameter of ROS 2 is a list of several types.
+    """
+    if not has_different_type(old, new) or old.type is YamlType.MIXED:
         return None
     return phrase(
         "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name
