@@ -122,7 +122,7 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
 
 
 def is_name_of_known_node(name: str) -> bool:
-    """Return whether a full name, such as ``/robot/move_base/make_plan``, is one that a well-known node offers."""
+    """Return whether a well-known node offers a full name, such as ``/robot/move_base/make_plan``."""
     node, own_name = name.split("/")[-2:] if "/" in name else ("", name)
     return any(
         program.rpartition("/")[2] == node and own_name in outputs
