@@ -1,4 +1,4 @@
-"""Write the table of parameters of nodes and plugins, for the language server.
+"""Write the table of parameters of nodes and plugins, for the language server and reviews.
 
 Most nodes declare their parameters in code. Each node is therefore started in a graph without a network, with each type
 of plugins that it loads, and its declarations are recorded, with the descriptions of the tables that it reads.
@@ -33,7 +33,7 @@ from linkwright.nodes.options import EXECUTABLES, NodeOptions
 
 ROOT = Path(__file__).resolve().parent.parent
 TEXTS_FILE = ROOT / "tools" / "node_parameters.toml"
-TABLE_FILE = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
+TABLE_FILE = ROOT / "src" / "linkwright" / "nodes" / "node_parameters.json"
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 

@@ -1,4 +1,4 @@
-"""Write the table of topics, services and actions of nodes, for the language server.
+"""Write the table of topics, services and actions of nodes, for the language server and reviews.
 
 Each node is started in a graph without a network, as in `node_parameters.py`, and its endpoints are recorded. The names
 are those in the program, before a launch file remaps them.
@@ -25,7 +25,7 @@ from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.nodes.options import EXECUTABLES
 
 ROOT = Path(__file__).resolve().parent.parent
-TABLE_FILE = ROOT / "src" / "linkwright" / "language" / "node_topics.json"
+TABLE_FILE = ROOT / "src" / "linkwright" / "nodes" / "node_topics.json"
 
 _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
     **_REQUIRED_PARAMETERS,

@@ -125,3 +125,18 @@ def test_a_costmap_that_reads_the_same_topic_by_another_remapping_loses_nothing(
     repository.write({PATH: new_text, "arm/launch/a.launch": LOADING.format(new, path)})
     (change,) = subject(compare(repository), PATH).changes
     assert (None if change.reason is None else str(change.reason)) == reason
+
+
+@pytest.mark.parametrize(
+    ("launch", "reasons"),
+    [("", {"None"}), ("substitutions = {'<depth_topic>': 'depth'}\n", {REASON.format("<depth_topic>")})],
+)
+def test_a_placeholder_that_no_launch_file_replaces_is_not_a_topic(repository, compare, launch, reasons):
+    """The layer keeps other parameters, so that the lines about its source are its only ones."""
+    text = NAV2.replace("scan depth", "depth").replace("/depth/points", "<depth_topic>")
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    repository.commit({"arm/package.xml": manifest, "arm/launch/nav.launch.py": launch, PATH: text})
+    source = text[text.index("        depth:\n") :]
+    repository.write({PATH: text.replace("        observation_sources: depth\n", "").replace(source, "")})
+    changes = subject(compare(repository), PATH).changes
+    assert {str(change.reason) for change in changes} == reasons

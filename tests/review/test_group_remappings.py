@@ -20,6 +20,7 @@ def generate_launch_description():
 INCLUDE = 'IncludeLaunchDescription(PythonLaunchDescriptionSource([FindPackageShare("{}"), "/launch/{}"]))'
 DRIVER = INCLUDE.format("imu_driver", "imu.launch.py")
 NAVIGATION = INCLUDE.format("nav2_bringup", "navigation_launch.py")
+MOVEIT = INCLUDE.format("robot_moveit_config", "move_group.launch.py")
 OWN = INCLUDE.format("arm", "inner.launch.py")
 AMCL = 'Node(package="nav2_amcl", executable="amcl")'
 RVIZ = 'Node(package="rviz2", executable="rviz2")'
@@ -37,6 +38,7 @@ PATH = "arm/launch/arm.launch.py"
         (AMCL, 'SetRemap("amcl_pose", "pose"), ', ["programs that use the name 'amcl_pose' do not find it"]),
         (AMCL, 'SetRemap("scan", "front/scan"), ', []),
         (NAVIGATION, 'SetRemap("scan", "front/scan"), ', []),
+        (MOVEIT, 'SetRemap("joint_states", "/arm/states"), ', []),
         (RVIZ, REMAP, []),
         (DRIVER, 'SetRemap("/tf", "tf"), ', []),
         ('Node(package="a", executable="a", remappings=[("imu/data", "data")])', REMAP, []),

@@ -48,7 +48,11 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
         ("move_base/move_base", "map", None),
         ("move_base/move_base", "move_base_simple/goal", None),
         ("move_base/move_base", "cmd_vel", CERTAIN),
-        ("slam_toolbox/async_slam_toolbox_node", "map", POSSIBLE),
+        ("slam_toolbox/async_slam_toolbox_node", "map", CERTAIN),
+        ("imu_filter_madgwick/imu_filter_madgwick_node", "imu/mag", None),
+        ("imu_filter_madgwick/imu_filter_madgwick_node", "imu/data", CERTAIN),
+        ("nav2_amcl/amcl", "initialpose", None),
+        ("robot_localization/ekf_node", "odometry/filtered", CERTAIN),
         ("amcl/amcl", "map", None),
         ("map_server/map_server", "map", CERTAIN),
         ("joint_state_publisher/joint_state_publisher", "follow_joint_trajectory", None),
@@ -67,6 +71,19 @@ def test_topics_of_well_known_programs_have_a_side(repository, compare, program,
     repository.write({"arm/launch/arm.launch": text})
     (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+@pytest.mark.parametrize(
+    ("target", "reason"),
+    [("/robot/move_base/make_plan", None), ("/robot/other/make_plan", POSSIBLE), ("/robot/move_base/x", POSSIBLE)],
+)
+def test_a_name_of_a_well_known_node_is_used_by_other_nodes(repository, compare, target, reason):
+    remap = f'<remap from="plan_route" to="{target}"/>'
+    text = f'<launch><node pkg="elsewhere" type="goals" name="n">{remap}</node></launch>'
+    repository.commit({"arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format("plan_route"))
 
 
 def test_robot_state_publisher_of_ros2_publishes_the_description(repository, compare):

@@ -339,3 +339,12 @@ def test_parts_with_equal_values_are_one_line(review_changes):
     found, _ = review_changes(old, f"{old}{limits}")
     assert sentences(found) == ["limits.joint_0 added: has_limit true, velocity 0.5"]
     assert found.changes[0].other_names == ("limits.joint_1", "limits.joint_2")
+
+
+def test_item_whose_name_gains_a_part_wins_over_an_earlier_one_with_equal_contents(review_changes):
+    item = "  - {{name: {}, type: T2, size: [{}, 0.1, 0.2], turn: [0, 90, 0]}}\n"
+    old = "motors:\n" + item.format("right", 1) + item.format("left", 2)
+    added = [item.format(name, number) for number, name in enumerate(("right_a", "right_b", "left_a", "left_b"), 3)]
+    found, _ = review_changes(old, "motors:\n" + "".join(added))
+    assert sentences(found)[0] == "motors[right] renamed to motors[right_a]"
+    assert found.changes[0].other_names == ("motors[left] -> motors[left_a]",)

@@ -1,26 +1,22 @@
 """The topics, services and actions of nodes that a launch file can remap.
 
-The names of Linkwright's nodes come from ``node_topics.json``, which ``tools/node_topics.py`` records. The names of
-other nodes come from the sources of the workspace.
+The names of Linkwright's nodes come from ``linkwright.nodes.recorded_topics``. The names of other nodes come from the
+sources of the workspace.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
 from linkwright.language.includes import real_path
 from linkwright.language.programs import find_programs
 from linkwright.language.source_declarations import declared_topics
+from linkwright.nodes.recorded_topics import load_table
 from linkwright.packages.share_layout import find_source
-
-_FILE = "node_topics.json"
 
 
 class NodeProgram(NamedTuple):
@@ -62,15 +58,9 @@ def plain_name(name: str) -> str:
     return name.lstrip("~").lstrip("/")
 
 
-@cache
-def _load_table() -> Mapping[str, Any]:
-    table: Mapping[str, Any] = json.loads(resources.files(__package__).joinpath(_FILE).read_text(encoding="utf-8"))
-    return table
-
-
 def node_name(package: str, executable: str) -> str:
     """Return the default name of a program's node, or empty if it is unknown."""
-    entry = _load_table().get(f"{package}/{executable}")
+    entry = load_table().get(f"{package}/{executable}")
     return "" if entry is None else str(entry["node"])
 
 
@@ -92,7 +82,7 @@ def find_topics(document: Document, programs: Iterable[NodeProgram]) -> list[Nod
 
 
 def _recorded_topics(program: NodeProgram) -> Iterator[NodeTopic]:
-    for name, entry in _load_table().items():
+    for name, entry in load_table().items():
         package, _, executable = name.partition("/")
         if program.package in ("", package) and program.executable in ("", executable):
             yield from (NodeTopic(*topic) for topic in entry["topics"])

@@ -1,25 +1,23 @@
 """The parameters of nodes, plugins of nodes, and controllers, with types and defaults.
 
-The parameters of nodes and plugins come from ``node_parameters.json``, which ``tools/node_parameters.py`` records. The
-parameters of controllers come from the tables that the controllers declare, including controllers of other packages.
+The parameters of nodes and plugins come from ``linkwright.nodes.recorded_parameters``. The parameters of controllers
+come from the tables that the controllers declare, including controllers of other packages.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from importlib import resources
 from inspect import cleandoc
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.extensions import extensions
+from linkwright.nodes.recorded_parameters import load_table
 
 CONTROLLER_MANAGER = "controller_manager"
 _CONTROLLERS = "linkwright.controllers"
-_FILE = "node_parameters.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,13 +100,6 @@ def to_yaml(value: Any) -> str:
     return text if text and text.strip("[]{}") == text else f'"{text}"'
 
 
-@cache
-def _load_table() -> Mapping[str, Any]:
-    text = resources.files("linkwright.language").joinpath(_FILE).read_text(encoding="utf-8")
-    table: Mapping[str, Any] = json.loads(text)
-    return table
-
-
 def _parse_infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[ParameterInfo, ...]:
     return tuple(
         ParameterInfo(
@@ -127,13 +118,13 @@ def _parse_infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[Pa
 @cache
 def node_names() -> tuple[str, ...]:
     """Return the names of the nodes with known parameters."""
-    return tuple(_load_table()["nodes"])
+    return tuple(load_table()["nodes"])
 
 
 @lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a node by its name, or an empty tuple if it is unknown."""
-    return _parse_infos(_load_table()["nodes"].get(node, {}), node)
+    return _parse_infos(load_table()["nodes"].get(node, {}), node)
 
 
 @cache
@@ -143,7 +134,7 @@ def plugins() -> Mapping[str, Plugin]:
         kind.replace("::", "/"): Plugin(
             kind, entry["node"], entry["listed"], entry["purpose"], _parse_infos(entry["parameters"], kind)
         )
-        for kind, entry in _load_table()["plugins"].items()
+        for kind, entry in load_table()["plugins"].items()
     }
 
 

@@ -30,6 +30,7 @@ from linkwright.review.launches.name_effects import (
     find_node_remapping_reason,
     find_remapping_reason,
     find_renaming_reason,
+    names_looked_up_frame,
     resolve_name,
 )
 from linkwright.review.launches.outlines import (
@@ -48,6 +49,7 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.parameter_types import accepts_type
+from linkwright.review.launches.programs.sides import only_looks_up
 from linkwright.review.launches.programs.silent import offers_no_names
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group, is_unconfigured
@@ -406,11 +408,12 @@ def _find_parameter_reason(
     if old is None or new is None or not setting.startswith(PARAMETER):
         return None
     old_name, new_name = old_outline.resolve(old), new_outline.resolve(new)
+    parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
+    is_frame = is_frame and not only_looks_up(entry.name, parameter, old_outline.root)
     is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
-    parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
     topic_reason = find_filter_topic_reason(entry.name, parameter, old_name, new_name)
     hardware_reason = find_hardware_reason(parameter.rpartition(".")[2], old_name, new_name)
     switch_reason = find_switch_reason(parameter, old_name, new_name) or hardware_reason or topic_reason
@@ -507,8 +510,8 @@ def _find_default_reason(
     reason = next((use.reason for use in uses if use.setting != CONDITION), None)
     old_name, new_name = (value.strip("\"'") for value in (old_value, new_value))  # '""' is an empty name for xacro
     is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
-    is_name = is_name and _VARIABLE.search(old_name) is None
-    if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
+    is_name = is_name and _VARIABLE.search(old_name) is None and _NAME_ARGUMENT.search(argument.name) is not None
+    if reason is None and is_name and not names_looked_up_frame(argument.name, old_outline):
         return name_reason(old_name)
     return reason or find_hardware_reason(argument.name, old_value, new_value)
 

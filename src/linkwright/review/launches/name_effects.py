@@ -8,8 +8,14 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import name_reason, names_reason, possible_name_reason
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
-from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline, without_condition
-from linkwright.review.launches.programs.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.outlines import PARAMETER, REMAPPING, Entry, LaunchOutline, without_condition
+from linkwright.review.launches.programs.sides import (
+    Side,
+    find_old_side,
+    is_name_of_known_node,
+    is_new_name,
+    only_looks_up,
+)
 from linkwright.review.launches.taken_names import is_taken_over
 
 _DESCRIPTION = ("robot_state_publisher/robot_state_publisher", "robot_description")
@@ -39,6 +45,8 @@ def find_node_remapping_reason(
         return None
     program = find_loaded_class(entry) or entry.name
     side = find_old_side(program, source, old_outline.root, new_outline.root)
+    if side is Side.UNKNOWN and any(is_name_of_known_node(target) for target in (old, new) if target is not None):
+        return None
     if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
@@ -131,6 +139,21 @@ def find_renaming_reason(
     ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def names_looked_up_frame(argument: str, outline: LaunchOutline) -> bool:
+    """Return whether an argument only gives nodes the names of frames that they look up but do not publish."""
+    variable = re.compile(rf"\$\((?:var|arg) {re.escape(argument)}[ )]")
+    uses = [
+        (entry.name, without_condition(setting))
+        for entry in outline.entries
+        for setting, value in entry.settings.items()
+        if variable.search(f"{entry.name} {value}")
+    ]
+    return bool(uses) and all(
+        setting.startswith(PARAMETER) and only_looks_up(program, setting.removeprefix(PARAMETER), outline.root)
+        for program, setting in uses
+    )
 
 
 def _can_be(name: str, other: str) -> bool:

@@ -21,6 +21,7 @@ from linkwright.review.parts.interface import (
 )
 from linkwright.review.parts.item_comparisons import make_comparison
 from linkwright.review.parts.left_uses import find_left_uses
+from linkwright.review.parts.links_without_prefix import compare_links_without_prefix
 from linkwright.review.parts.mesh_addresses import compare_mesh_addresses
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
@@ -214,6 +215,7 @@ class _Comparer:
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
         compare_mesh_addresses(pair)
+        compare_links_without_prefix(pair)
         compare_moved_to_callers(pair, self._graphs, renamed)
         compare_readings(pair, self._graphs)
 

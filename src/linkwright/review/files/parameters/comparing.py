@@ -39,6 +39,7 @@ from linkwright.review.files.parameters.names import (
     is_parameter,
     list_part_paths,
 )
+from linkwright.review.files.parameters.nested_lists import merge_nested_lists
 from linkwright.review.files.parameters.placeholders import find_renamed_placeholder, rename_placeholder
 from linkwright.review.files.parameters.plugin_packages import PluginPackages
 from linkwright.review.files.parameters.rearranged_nodes import arrange_like
@@ -223,6 +224,7 @@ def _find_changes(
 ) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
+    old_values, new = merge_nested_lists(old_values, new), merge_nested_lists(new, old_values)
     lists = find_replaced_lists(old_values, new)
     report_replaced_lists(pair, lists, new)
     old_values = {lists.get(path, path): value for path, value in old_values.items()}

@@ -20,6 +20,9 @@ _LAYER_TOPIC = re.compile(
 A file that only has the layers, as for ROS 1, belongs to one costmap.
 """
 
+_PLACEHOLDER = re.compile(r"<\w+>")
+"""A part of a name that a launch file has to replace."""
+
 FindRemappings = Callable[[], "tuple[Sequence[Mapping[str, str]], Sequence[Mapping[str, str]]]"]
 
 
@@ -30,14 +33,20 @@ class CostmapTopics:
         old: the old values by path.
         new: the new values by path.
         find_remappings: a function that returns the remappings of the nodes that load either version of the file.
+        was_replaced: a function that returns whether an old launch file replaces a placeholder, such as ``<scan>``.
     """
 
     def __init__(
-        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], find_remappings: FindRemappings
+        self,
+        old: Mapping[str, YamlValue],
+        new: Mapping[str, YamlValue],
+        find_remappings: FindRemappings,
+        was_replaced: Callable[[str], bool],
     ) -> None:
         self._old = old
         self._new = new
         self._find_remappings = find_remappings
+        self._was_replaced = was_replaced
 
     def find_reason(self, parameter: str) -> Phrase | None:
         """Return the reason why changing or removing a parameter is breaking, or None if no topic is lost by it."""
@@ -51,12 +60,11 @@ class CostmapTopics:
         source = _get_parent(parameter)
         layer, _, name = source.rpartition(".")
         owner = _join(layer, _SOURCES)
-        return (
-            owner in self._old
-            and owner in self._new
-            and name in _split(self._old[owner].text)
-            and name not in _split(self._new[owner].text)
-        )
+        if owner not in self._old or name not in _split(self._old[owner].text):
+            return False
+        if owner in self._new:
+            return name not in _split(self._new[owner].text)
+        return any(other.startswith(f"{layer}.") for other in self._new)
 
     def find_replaced_layers(self, parameter: str) -> set[str]:
         """Return the layers that a list of a costmap no longer names, but whose topics other layers of it read.
@@ -80,6 +88,8 @@ class CostmapTopics:
         """The topics that a costmap no longer reads, by the parameters that named them."""
         lost: dict[str, list[str]] = {}
         for owner, costmap, topic in _list_topics(self._old):
+            if any(not self._was_replaced(placeholder) for placeholder in _PLACEHOLDER.findall(topic)):
+                continue  # no valid name, so that the costmap got no messages
             if (costmap, topic) not in self._new_topics and not self._keeps_full_name(costmap, topic):
                 for parameter in {owner, _get_list_name(owner)}:
                     lost.setdefault(parameter, []).append(topic)

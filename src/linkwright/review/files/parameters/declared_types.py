@@ -1,10 +1,11 @@
-"""Find the types with which sources declare a parameter of ROS 2."""
+"""Find the types with which sources and well-known nodes declare a parameter of ROS 2."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+from linkwright.nodes.recorded_parameters import find_recorded_plugin_type, find_recorded_type
 from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue, parse_yaml_value
 
 _CPP_TYPES = {
@@ -33,6 +34,21 @@ def declare_type(texts: Iterable[str], parameter: str, value: YamlValue) -> bool
     pattern = re.compile(_DECLARATION.format(name=re.escape(parameter)))
     types = {declared for text in texts if parameter in text for declared in _find_types(text, pattern)}
     return types == {(value.type, value.is_list)}
+
+
+def has_recorded_type(parameter: str, values: Mapping[str, YamlValue]) -> bool:
+    """Return whether a value has the type with which a well-known node, or its plugin, declares the parameter.
+
+    Args:
+        parameter: the path of the parameter.
+        values: the values of the file by path, also those that give plugins their classes.
+    """
+    value, (node, _, name) = values[parameter], parameter.partition(".ros__parameters.")
+    group, _, own_name = parameter.rpartition(".")
+    plugin = values.get(f"{group}.plugin")
+    declared = "" if plugin is None else find_recorded_plugin_type(plugin.text, own_name)
+    declared = declared or find_recorded_type(re.split(r"[./]", node)[-1], name)
+    return value.type is not None and declared == f"{value.type.value}{'_array' * value.is_list}"
 
 
 def _find_types(text: str, pattern: re.Pattern[str]) -> Iterator[tuple[YamlType | None, bool]]:

@@ -76,10 +76,11 @@ class KeyReaders:
 
     def is_replaced(self, value: str) -> bool:
         """Return whether a launch file replaces a value, such as ``KEEPOUT_ENABLED``, before it loads the file."""
-        if not _PLACEHOLDER.fullmatch(value):
-            return False
-        texts = map(self.versions.new.text, find_launch_files(self.versions.new))
-        return any(f'"{value}"' in text or f"'{value}'" in text for text in texts)
+        return _PLACEHOLDER.fullmatch(value) is not None and _replaces(self.versions.new, value)
+
+    def was_replaced(self, placeholder: str) -> bool:
+        """Return whether a launch file of the old version replaces a placeholder before it loads the file."""
+        return _replaces(self.versions.old, placeholder)
 
     def have_stopped_reading(self, group: str) -> bool:
         """Return whether the sources that named a group of parameters changed, and no source names it any more.
@@ -166,6 +167,12 @@ class KeyReaders:
         for path in self.versions.new.paths(suffixes):
             if path not in excluded and TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
                 yield path
+
+
+def _replaces(version: Version, placeholder: str) -> bool:
+    """Return whether a launch file of a version names a placeholder as a text."""
+    texts = map(version.text, find_launch_files(version))
+    return any(f'"{placeholder}"' in text or f"'{placeholder}'" in text for text in texts)
 
 
 def _list_sources(version: Version) -> Iterator[str]:

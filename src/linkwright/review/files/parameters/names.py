@@ -13,10 +13,11 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import name_reason, names_reason
 from linkwright.review.files.parameters.costmap_topics import CostmapTopics, FindRemappings
+from linkwright.review.files.parameters.declared_types import has_recorded_type
 from linkwright.review.files.parameters.key_readers import KeyReaders
 from linkwright.review.files.parameters.replaced_classes import find_replaced_classes, is_below_any
 from linkwright.review.files.parameters.unread_plugins import is_unread_plugin
-from linkwright.review.files.parameters.yaml_values import YamlValue
+from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue
 from linkwright.review.texts.list_changes import EMPTY, list_items
 
 _FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
@@ -125,7 +126,7 @@ class NameRules:
         }
         """The lost controllers and those with another class, which the lines about their types tell."""
         self._new_parts = {part for name in new for part in list_part_paths(name)}
-        self._topics = CostmapTopics(old, new, find_remappings)
+        self._topics = CostmapTopics(old, new, find_remappings, readers.was_replaced)
         self._replaced = find_replaced_classes(old, new)
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
@@ -171,8 +172,8 @@ class NameRules:
         if not self._has_types or (new_value.is_list and _PLUGIN_LISTS.search(parameter)):
             return None  # ROS 1 has no types, and the lists of Nav2 accept nothing else
         type_reason, node = find_type_reason(old_value, new_value), find_node_name(parameter)
-        if type_reason is None or node is None:
-            return type_reason
+        if type_reason is None or node is None or has_recorded_type(parameter, self._new):
+            return None
         own_name = parameter.partition(".ros__parameters.")[2]
         return None if self._readers.declare_type(node, own_name, new_value) else type_reason
 
@@ -345,8 +346,11 @@ def has_different_type(old: YamlValue, new: YamlValue) -> bool:
 
 
 def find_type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
-    """Return the reason why a different type is breaking; None if the type is the same."""
-    if not has_different_type(old, new):
+    """Return the reason why a different type is breaking; None for the same type, or if no parameter had the old one.
+
+    No parameter of ROS 2 is a list of several types.
+    """
+    if not has_different_type(old, new) or old.type is YamlType.MIXED:
         return None
     return phrase(
         "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name

@@ -165,7 +165,8 @@ def _match_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict
             continue
         similarity = _compute_similarity(old[old_name], new[new_name])
         if similarity >= _MIN_SIMILARITY or _has_parameters_of_node(old[old_name], new[new_name]):
-            is_longer = old_name.startswith(new_name) or new_name.startswith(old_name)
+            old_start, new_start = old_name.rstrip("]"), new_name.rstrip("]")
+            is_longer = old_start.startswith(new_start) or new_start.startswith(old_start)
             ranked.append(((count, is_longer, similarity), old_name, new_name))
     ranked.sort(key=lambda pair: pair[0], reverse=True)
     return dict(_select_unused_pairs(((old_name, new_name) for _, old_name, new_name in ranked), ()))

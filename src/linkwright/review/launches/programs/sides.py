@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable
 from enum import Enum
 from pathlib import Path
 
+from linkwright.nodes.recorded_topics import find_recorded_roles
 from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.programs.default_names import find_package_folders
 from linkwright.review.launches.programs.modules import find_program_modules
@@ -15,7 +16,8 @@ from linkwright.review.sources.reading import read_source_names
 
 _SUBSCRIBING_PROGRAM = re.compile(
     r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
-    r"move_base/|amcl/|gmapping/|robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
+    r"move_base/|amcl/|gmapping/|robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/|"
+    r"\w+_moveit_config/"
 )
 _INPUT_TOPIC = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
@@ -25,27 +27,19 @@ _INPUT_TOPIC = re.compile(
 _INPUTS = {
     "move_base/move_base": {"map", "goal", "move_base_simple/goal"},
     "amcl/amcl": {"map", "initialpose"},
-    "nav2_amcl/amcl": {"map", "initialpose"},
     "map_server/map_saver": {"map"},
 }
-"""More topics to which well-known programs subscribe."""
+"""More topics to which well-known programs subscribe, without those of `find_recorded_roles`."""
 _OUTPUTS = {
     "move_base/move_base": {"cmd_vel"},
     "amcl/amcl": {"amcl_pose", "particlecloud"},
-    "nav2_amcl/amcl": {"amcl_pose", "particle_cloud"},
-    "nav2_controller/controller_server": {"cmd_vel"},
-    "nav2_map_server/map_server": {"map"},
     "map_server/map_server": {"map"},
     "gmapping/slam_gmapping": {"map"},
-    "robot_localization/ekf_node": {"odometry/filtered", "set_pose", "enable", "toggle"},
-    "robot_localization/ukf_node": {"odometry/filtered", "set_pose", "enable", "toggle"},
     "robot_localization/ekf_localization_node": {"odometry/filtered", "set_pose"},
     "robot_localization/ukf_localization_node": {"odometry/filtered", "set_pose"},
-    "joint_state_publisher/joint_state_publisher": {"joint_states"},
     "depthimage_to_laserscan/depthimage_to_laserscan": {"scan"},
-    "pointcloud_to_laserscan/pointcloud_to_laserscan_node": {"scan"},
 }
-"""Topics and services that well-known programs offer."""
+"""Topics and services that well-known programs offer, without those of `find_recorded_roles`."""
 _ALL_OUTPUTS: dict[str, set[str]] = {
     "move_base/move_base": {"cmd_vel", "current_goal", "goal", "make_plan", "clear_costmaps", "clear_unknown_space"},
     "joint_state_publisher/joint_state_publisher": {"joint_states"},
@@ -67,6 +61,8 @@ _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
 _USING_KINDS = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
+_USING_ROLES = frozenset({"subscription", "client", "action client"})
+"""The roles in which programs with recorded topics offer nothing."""
 _MAX_SOURCES = 80
 _LIBRARY_NAMES = frozenset({"tf", "tf_static", "diagnostics", "rosout", "clock", "parameter_events"})
 """The names that libraries of ROS publish for a program, so that its sources need not have them."""
@@ -98,6 +94,10 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
         root: the folder of the repository, which may have the sources; None if it is unknown.
     """
     relative_name = name.lstrip("~/")
+    is_parameter = relative_name == "robot_description"  # in ROS 1
+    roles = frozenset() if is_parameter else find_recorded_roles(program, relative_name)
+    if roles:
+        return Side.USES if roles <= _USING_ROLES else Side.OFFERS
     if relative_name in _OUTPUTS.get(program, ()):
         return Side.OFFERS
     if relative_name in _INPUTS.get(program, ()):
@@ -119,6 +119,29 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
     if kinds & _OFFERING_KINDS or _NAMED_OUTPUT.fullmatch(relative_name):
         return Side.OFFERS
     return Side.USES if _NAMED_INPUT.fullmatch(relative_name) else Side.UNKNOWN
+
+
+def is_name_of_known_node(name: str) -> bool:
+    """Return whether a well-known node offers a full name, such as ``/robot/move_base/make_plan``."""
+    node, own_name = name.split("/")[-2:] if "/" in name else ("", name)
+    return any(
+        program.rpartition("/")[2] == node and own_name in outputs
+        for tables in (_OUTPUTS, _ALL_OUTPUTS)
+        for program, outputs in tables.items()
+    )
+
+
+def only_looks_up(program: str, parameter: str, root: Path | None) -> bool:
+    """Return whether the sources of a node use the value of a parameter only as the name of a frame to look up.
+
+    Args:
+        program: the package and the executable of the node.
+        parameter: the name of the parameter.
+        root: the folder of the repository, which may have the sources; None if it is unknown.
+    """
+    files = () if root is None else _list_sources(root, program.partition("/")[0])
+    names = (item for file in files for item in read_source_names(file).default_names)
+    return {item.kind for item in names if item.parameter.lstrip("~/.") == parameter} == {NameKind.FRAME_LOOKUP}
 
 
 def find_old_side(program: str, name: str, old_root: Path | None, new_root: Path | None) -> Side:
@@ -207,12 +230,16 @@ def _lacks_name(name: str, modules: Iterable[Path]) -> bool:
 @cached_in_review(maxsize=64)
 def _read_package_kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of topics, services and actions in a package's sources, by name."""
+    return _collect_kinds(_list_sources(root, package))
+
+
+@cached_in_review(maxsize=64)
+def _list_sources(root: Path, package: str) -> tuple[Path, ...]:
+    """Return the sources of a package, at most as many as are read."""
     folder = find_package_folders(root).get(package)
-    if folder is None:
-        return {}
     suffixes = (*CPP_SUFFIXES, PYTHON_SUFFIX)
-    files = [file for file in sorted(folder.rglob("*")) if file.suffix in suffixes and file.is_file()]
-    return _collect_kinds(files[:_MAX_SOURCES])
+    files = () if folder is None else sorted(folder.rglob("*"))
+    return tuple(file for file in files if file.suffix in suffixes and file.is_file())[:_MAX_SOURCES]
 
 
 def _collect_kinds(files: Iterable[Path]) -> dict[str, set[NameKind]]:
