@@ -8,8 +8,9 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from linkwright.sdf.frames import Frames, placed_links
+from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.resources import Missing, ResourceFinder, find_model_file
-from tests.sdf.worlds import examine_world_in, write_files
+from tests.sdf.worlds import examine_world_in, read_sdf, write_files
 
 
 def sdf_text(elements: str, version: str = "1.9") -> str:
@@ -245,6 +246,19 @@ def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
     assert [diagnostic.code for diagnostic in world_reading.diagnostics] == ["SDF141"]
     assert world_reading.sdf is not None
     assert Frames(world_reading.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
+
+
+@pytest.mark.parametrize(
+    ("element", "kind"),
+    [('<model name="box"><link name="l"/></model>', "models"), ('<light name="box" type="point"/>', "lights")],
+)
+def test_file_can_consist_of_an_include(tmp_path, element, kind):
+    write_files(tmp_path, {"box/model.sdf": sdf_text(element)})
+    sdf = read_sdf('<sdf version="1.9"><include><uri>box</uri><name>b</name></include></sdf>')
+    included = resolve_includes(sdf, tmp_path / "w.sdf", ResourceFinder(PackageFinder(start=[tmp_path]), {}))
+    assert [entity.name for entity in getattr(included.sdf, kind)] == ["b"]
+    assert not included.sdf.includes
+    assert not included.diagnostics
 
 
 def test_lights_and_actors_can_be_included(tmp_path):

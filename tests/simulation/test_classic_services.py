@@ -200,6 +200,11 @@ async def test_services_change_link_and_joint_properties():
         )
         assert list(response.damping) == [2.0]
         assert server.simulation.model.joint("arm::shoulder").range[1] == 0.25
+        config = get_message("gazebo_msgs/msg/ODEJointProperties")(lo_stop=[0.0], hi_stop=[0.0])
+        facts = {"joint_name": "arm::shoulder", "ode_joint_config": config}
+        assert (await call_service(graph, server, kind, "/set_joint_properties", **facts)).success
+        server.advance(SECOND_NS)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=0.01)
         assert not log
 
 

@@ -36,6 +36,12 @@ def arm_model(limit: str, plugin: str = "", axis: str = "0 1 0", extra: str = ""
     )
 
 
+def with_range(lower: float, upper: float) -> str:
+    """Return the model with these limits of the position in rad."""
+    wide = "<lower>-100</lower><upper>100</upper>"
+    return arm_model("").replace(wide, f"<lower>{lower}</lower><upper>{upper}</upper>")
+
+
 def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5) -> float:
     for _ in range(round(seconds * 1000)):
         simulation.push_joint("arm::turn", force)
@@ -86,6 +92,26 @@ def test_joint_above_velocity_limit_is_not_braked():
 )
 def test_nonpositive_limits_are_ignored(limit: str):
     simulation = make_simulation(arm_model(limit), gravity="0 0 0")
+    assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
+
+
+@pytest.mark.parametrize("gravity", ["0 0 0", "-9.81 0 0"])
+def test_joint_with_equal_limits_does_not_move(gravity: str):
+    simulation = make_simulation(with_range(0.0, 0.0), gravity=gravity)
+    assert speed_when_pushed(simulation, 2.0) == pytest.approx(0.0, abs=1e-6)
+    assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.0, abs=1e-3)
+    assert speed_when_pushed(simulation, -2.0) == pytest.approx(0.0, abs=1e-6)
+    assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_joint_with_equal_limits_goes_to_them():
+    simulation = make_simulation(with_range(0.3, 0.3), gravity="0 0 0")
+    speed_when_pushed(simulation, 0.0, 2.0)
+    assert simulation.joint_state("arm::turn") == pytest.approx((0.3, 0.0), abs=1e-3)
+
+
+def test_limits_in_wrong_order_are_ignored():
+    simulation = make_simulation(with_range(0.1, -0.1), gravity="0 0 0")
     assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
 
 

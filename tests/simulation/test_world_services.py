@@ -82,6 +82,25 @@ async def test_pose_of_request_replaces_pose_of_model(tmp_path):
         assert session.simulator.server.simulation.model_pose("second")[:3] == pytest.approx(on_ground)
 
 
+async def test_included_model_is_created(tmp_path):
+    path = tmp_path / "ball.sdf"
+    path.write_text(SDF, encoding="utf-8")
+    include = (
+        '<sdf version="1.9"><include><uri>{uri}</uri><name>toy</name><pose>1 0 2 0 0 0</pose>'
+        "<static>true</static></include></sdf>"
+    )
+    async with simulator(tmp_path) as session:
+        assert await create(session, name="one", sdf=include.format(uri=path.as_uri()), pose=pose_at(2.0, 3.0))
+        assert session.simulator.server.simulation.model_pose("one")[:3] == pytest.approx((2.0, 0.0, 3.0))
+        request = create_request(CREATE, f'sdf: "{include.format(uri=path.as_uri())}"'.replace('="1.9"', "='1.9'"))
+        await session.call(CREATE.ros_type, "/world/test/create", entity_factory=request.entity_factory)
+        assert session.simulator.server.simulation.model_pose("toy")[:3] == pytest.approx((1.0, 0.0, 2.0))
+        assert models(session)["toy"].model.static
+        assert not await create(session, name="two", sdf=include.format(uri="model://missing_ball"))
+        assert len(errors(session)) == 1
+        assert "'model://missing_ball' is left out" in errors(session)[0]
+
+
 async def test_request_of_gz_without_pose_keeps_pose_of_model(tmp_path):
     description = SDF.replace('"', "'")
     async with simulator(tmp_path) as session:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, phrase, term
 from linkwright.sdf.actors import Actor
@@ -28,6 +28,7 @@ A few lines can create billions of models if each model includes another one twi
 """
 
 Entity = Model | Light | Actor
+Owner = TypeVar("Owner", World, Sdf)
 
 
 @dataclass
@@ -38,8 +39,8 @@ class Included:
         sdf: the file with its includes replaced by the included models; an include that cannot be resolved remains.
         diagnostics: errors in the included files, and includes of missing files.
         files: the files that were read, in order, as keys.
-        entities: the entity for each include of a world, by the ``id()`` of the include's element; None if it could
-            not be loaded.
+        entities: the entity for each include of a world or file, by the ``id()`` of the include's element; None if it
+            could not be loaded.
     """
 
     sdf: Sdf
@@ -58,8 +59,8 @@ def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
     """
     resolver = _Resolver(finder)
     worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
-    models = tuple(resolver.model(model, path, ()) for model in sdf.models)
-    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files, resolver.entities)
+    resolved = resolver.add_included(replace(sdf, worlds=worlds), path)
+    return Included(resolved, resolver.diagnostics, resolver.files, resolver.entities)
 
 
 class _Named(Protocol):
@@ -82,10 +83,22 @@ class _Resolver:
         self._count = 0
 
     def world(self, world: World, path: Path) -> World:
-        models = [self.model(model, path, ()) for model in world.models]
-        lights, actors, unresolved_includes = list(world.lights), list(world.actors), []
-        names = _collect_names(models, world.frames, world.joints)
-        for include in world.includes:
+        populations = [
+            replace(population, models=tuple(self.model(model, path, ()) for model in population.models[:1]))
+            for population in world.populations
+        ]
+        other_names = _collect_names(world.frames, world.joints)
+        return replace(self.add_included(world, path, other_names), populations=tuple(populations))
+
+    def add_included(self, owner: Owner, path: Path, other_names: Iterable[str] = ()) -> Owner:
+        """Return a world or file with its models resolved, and with the models, lights and actors that it includes.
+
+        `other_names` are the names of the owner's frames and joints.
+        """
+        models = [self.model(model, path, ()) for model in owner.models]
+        lights, actors, unresolved_includes = list(owner.lights), list(owner.actors), []
+        names = _collect_names(models) | {*other_names}
+        for include in owner.includes:
             entity = self.entities[id(include.element)] = self._load_entity(include, path, ())
             self._check_name(entity, include, names)
             if isinstance(entity, Model):
@@ -96,17 +109,12 @@ class _Resolver:
                 actors.append(entity)
             else:
                 unresolved_includes.append(include)
-        populations = [
-            replace(population, models=tuple(self.model(model, path, ()) for model in population.models[:1]))
-            for population in world.populations
-        ]
         return replace(
-            world,
+            owner,
             models=tuple(models),
             lights=tuple(lights),
             actors=tuple(actors),
             includes=tuple(unresolved_includes),
-            populations=tuple(populations),
         )
 
     def model(self, model: Model, path: Path, chain: tuple[Path, ...]) -> Model:

@@ -135,7 +135,7 @@ def read(document: Document) -> Reading:
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
     sdf: Sdf = read_element(upgrade_element(root, SDF) if is_old(root) else root, SDF, report)
-    if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
+    if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors or sdf.includes):
         hint = phrase("put a <world> or a <model> into <sdf>")
         report.error("SDF131", phrase("<sdf> contains neither a world nor a model"), root, hint=hint)
     return Reading(sdf, report.in_order())

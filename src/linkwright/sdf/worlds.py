@@ -126,13 +126,17 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class Sdf:
-    """The content of an SDF file: worlds, or a single model, light or actor."""
+    """The content of an SDF file: worlds, or a single model, light or actor.
+
+    A program that adds a model to a world may send an include alone, as libsdformat allows.
+    """
 
     version: str
     worlds: tuple[World, ...] = ()
     models: tuple[Model, ...] = ()
     lights: tuple[Light, ...] = ()
     actors: tuple[Actor, ...] = ()
+    includes: tuple[Include, ...] = ()
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
@@ -261,7 +265,7 @@ SDF = ElementRule(
     "sdf",
     "the content of the file: worlds, or a single model, light or actor",
     (AttributeRule("version", TEXT, "the version of SDF, 1.0 to 1.12", required=True, default="1.6"),),
-    (WORLD, MODEL, LIGHT, ACTOR),
+    (WORLD, MODEL, LIGHT, ACTOR, INCLUDE),
     make=Sdf,
     keeps_element=True,
     passes_element=True,

@@ -22,7 +22,7 @@ from linkwright.sdf.worlds import find_physics
 from linkwright.simulation.plugins.entities import Entities, fill_response, pose_to_message, vector_components
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.scene.bodies import set_coefficient
+from linkwright.simulation.scene.bodies import set_coefficient, set_joint_range
 
 _JOINT_TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
 """The joint types of ``GetJointProperties``, by their names in SDF."""
@@ -134,8 +134,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 else (-_UNREACHABLE_LIMIT, _UNREACHABLE_LIMIT)
             )
             if len(config.lo_stop) or len(config.hi_stop):
-                joint.range = [next(iter(config.lo_stop), lower), next(iter(config.hi_stop), upper)]
-                joint.limited = True
+                set_joint_range(joint, next(iter(config.lo_stop), lower), next(iter(config.hi_stop), upper))
             if len(config.damping):
                 set_coefficient(joint, "damping", config.damping[0])
             self.simulation.mark_changed()

@@ -42,6 +42,10 @@ _MIN_INERTIA = 1e-9
 """The minimum inertia in kg m2 that replaces an impossible inertia."""
 _MIN_MOMENT = 1e-12
 """The minimum moment of inertia in kg m2, because MuJoCo treats moments below 1e-14 as zero."""
+_MIN_RANGE = 2e-6
+"""The minimum range of a joint in rad (or m), because MuJoCo has no joints with equal limits."""
+_MAX_LIMIT = 1e6
+"""The maximum limit of a joint in rad (or m)."""
 _DEFAULT_INERTIAL = Inertial()
 _GRAY: Color = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
@@ -165,9 +169,8 @@ class BodyWriter:
 
     def _apply_limits(self, joint: Any, axis: Axis, *, endless: bool) -> None:
         limit, dynamics = axis.limit, axis.dynamics
-        joint.limited = not endless and (isfinite(limit.lower) or isfinite(limit.upper)) and limit.lower < limit.upper
-        if joint.limited:
-            joint.range = [max(limit.lower, -1e6), min(limit.upper, 1e6)]
+        if not endless and (isfinite(limit.lower) or isfinite(limit.upper)):
+            set_joint_range(joint, limit.lower, limit.upper)
         joint.actfrclimited = isfinite(limit.effort) and limit.effort > 0
         if joint.actfrclimited:
             joint.actfrcrange = [-limit.effort, limit.effort]
@@ -265,6 +268,18 @@ def _get_color(visual: Visual, default: Color) -> list[float]:
     material = visual.material
     red, green, blue, alpha = (material.diffuse if material is not None else None) or default
     return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]
+
+
+def set_joint_range(joint: Any, lower: float, upper: float) -> None:
+    """Limit the position of a joint to a range in rad (or m).
+
+    A joint with equal limits cannot move. Limits in the wrong order are ignored, as Gazebo's physics engines do.
+    """
+    lower, upper = max(lower, -_MAX_LIMIT), min(upper, _MAX_LIMIT)
+    joint.limited = lower <= upper
+    if joint.limited:
+        play = max(_MIN_RANGE - (upper - lower), 0.0) / 2
+        joint.range = [lower - play, upper + play]
 
 
 def set_coefficient(element: Any, name: str, value: float) -> None:

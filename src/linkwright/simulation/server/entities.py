@@ -41,7 +41,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
     """Read a model from URDF or SDF.
 
     Args:
-        text: the URDF or SDF; only the first model of SDF is read.
+        text: the URDF or SDF; only the first model of SDF is read, which may be an ``<include>`` directly in ``<sdf>``.
         finder: finds the included files.
         library: the robot descriptions that the process has read.
 
@@ -63,7 +63,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
     resolved = resolve_includes(sdf.sdf, Path.cwd() / _SOURCE_NAME, finder)
     findings = (*warnings, *sdf.diagnostics, *resolved.diagnostics)
     if not resolved.sdf.models:
-        if has_errors(findings):
+        if has_errors(findings) or resolved.sdf.includes:
             raise LinkwrightError(*_select_errors(findings))
         message = phrase("the description contains no model")
         hint = (
