@@ -110,6 +110,11 @@ def _evaluate_expression(node: ast.expr) -> object:
     if isinstance(node, ast.BoolOp):
         values = [_to_bool(_evaluate_expression(item)) for item in node.values]
         return all(values) if isinstance(node.op, ast.And) else any(values)
+    if isinstance(node, ast.IfExp):
+        return _evaluate_expression(node.body if _to_bool(_evaluate_expression(node.test)) else node.orelse)
+    if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Dict):
+        keys = [_evaluate_expression(key) for key in node.value.keys if key is not None]
+        return _evaluate_expression(node.value.values[keys.index(_evaluate_expression(node.slice))])
     if isinstance(node, (ast.List, ast.Tuple)):
         return [_evaluate_expression(item) for item in node.elts]
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not (node.args or node.keywords):

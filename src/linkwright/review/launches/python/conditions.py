@@ -12,7 +12,7 @@ from linkwright.packages.readers.python_values import PythonFile, argument_of, c
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.expressions import unparse_on_one_line
-from linkwright.review.launches.python.helpers import find_parameter_defaults, only_returns_value
+from linkwright.review.launches.python.helpers import find_parameter_defaults, find_returned_value
 from linkwright.review.launches.python.names import LaunchPythonFile
 from linkwright.review.sources.reading import try_read_source
 
@@ -164,6 +164,8 @@ class ArgumentReader:
             return value
         if value is not node and isinstance(value, (ast.BoolOp, ast.UnaryOp, ast.Compare)):
             return self.read_test(value)
+        if isinstance(value, ast.IfExp):
+            return ast.IfExp(*map(self.read_test, (value.test, value.body, value.orelse)))
         if isinstance(value, ast.Call):
             called = self._enter_function(value)
             if called is not None:
@@ -200,6 +202,10 @@ class ArgumentReader:
             return value
         if isinstance(value, ast.Subscript) and _is_configurations(value.value):
             return _make_variable(self._resolve(value.slice))
+        if isinstance(value, ast.IfExp):
+            return ast.IfExp(self.read_test(value.test), self._read_text(value.body), self._read_text(value.orelse))
+        if isinstance(value, ast.Subscript):
+            return ast.Subscript(self._read_texts(value.value), self._read_text(value.slice), ast.Load())
         if not isinstance(value, ast.Call):
             raise _UnknownTestError
         called = self._enter_function(value)
@@ -220,6 +226,20 @@ class ArgumentReader:
         if name is None:
             raise _UnknownTestError
         return _make_variable(ast.Constant(name))
+
+    def _read_texts(self, node: ast.expr) -> ast.Dict:
+        """Return a dictionary of literal texts.
+
+        Raises:
+            _UnknownTestError: it is something else.
+        """
+        value = self._resolve(node)
+        keys = [key for key in value.keys if key is not None] if isinstance(value, ast.Dict) else []
+        if not isinstance(value, ast.Dict) or len(keys) < len(value.keys):
+            raise _UnknownTestError
+        if not all(map(self.is_text, (*keys, *value.values))):
+            raise _UnknownTestError
+        return ast.Dict(list(map(self._resolve, keys)), list(map(self._resolve, value.values)))
 
     def find_object(self, node: ast.expr) -> str | None:
         """Return the name of the argument whose substitution an expression is; None for other expressions."""
@@ -260,9 +280,10 @@ class ArgumentReader:
         ]
         if not definitions:
             return None
-        if len(definitions) > 1 or not only_returns_value(definitions[0]) or self._depth >= _MAX_CALL_DEPTH:
+        function = definitions[0]
+        returned = find_returned_value(function.body)
+        if len(definitions) > 1 or returned is None or self._depth >= _MAX_CALL_DEPTH:
             raise _UnknownTestError
-        function, last = definitions[0], definitions[0].body[-1]
         names = [parameter.arg for parameter in function.args.args]
         passed = dict(zip(names, call.args, strict=False))
         passed |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
@@ -272,9 +293,9 @@ class ArgumentReader:
             for value in values.values()
             for part in ast.walk(value)
         )
-        if not is_clear or not isinstance(last, ast.Return) or last.value is None:
+        if not is_clear:
             raise _UnknownTestError
-        return ArgumentReader(self._python, function, values, self._depth + 1), last.value
+        return ArgumentReader(self._python, function, values, self._depth + 1), returned
 
     def _replace_names(self, node: ast.expr) -> ast.expr:
         """Return an expression with the values of the parameters of the function in place of their names."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -283,15 +283,41 @@ class HelperFunctions:
 def only_returns_value(function: ast.FunctionDef) -> bool:
     """Return whether a function only assigns local names and returns a value."""
     *statements, last = function.body
+    return isinstance(last, ast.Return) and last.value is not None and all(map(_is_simple, statements))
+
+
+def find_returned_value(statements: Sequence[ast.stmt]) -> ast.expr | None:
+    """Return what the statements of a function return, as one expression; None if they do anything else.
+
+    An ``if`` statement that returns early becomes a conditional expression. Cases in which the function raises an
+    error are left out, because it returns nothing there.
+    """
+    for index, statement in enumerate(statements):
+        if isinstance(statement, ast.Return):
+            return statement.value
+        if isinstance(statement, ast.If):
+            others = [*statement.orelse, *statements[index + 1 :]]
+            if _raises(statement.body):
+                return find_returned_value(others)
+            body, other = find_returned_value(statement.body), find_returned_value(others)
+            if body is None or other is None:
+                return body if _raises(others) else None
+            return ast.copy_location(ast.IfExp(statement.test, body, other), statement)
+        if not _is_simple(statement):
+            return None
+    return None
+
+
+def _raises(statements: Sequence[ast.stmt]) -> bool:
+    return bool(statements) and isinstance(statements[0], ast.Raise)
+
+
+def _is_simple(statement: ast.stmt) -> bool:
+    """Return whether a statement is an import, a docstring or the assignment of a name."""
     return (
-        isinstance(last, ast.Return)
-        and last.value is not None
-        and all(
-            isinstance(statement, (ast.Import, ast.ImportFrom))
-            or (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant))
-            or (isinstance(statement, ast.Assign) and all(isinstance(item, ast.Name) for item in statement.targets))
-            for statement in statements
-        )
+        isinstance(statement, (ast.Import, ast.ImportFrom))
+        or (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant))
+        or (isinstance(statement, ast.Assign) and all(isinstance(item, ast.Name) for item in statement.targets))
     )
 
 
