@@ -36,6 +36,27 @@ def test_an_added_header_is_told_if_it_is_installed(repository, compare, install
     assert [line for line in lines if "Leg" in line or "leg" in line] == expected
 
 
+@pytest.mark.parametrize("guard", ["#pragma once\n{}", "#ifndef LEG_H\n#define LEG_H\n{}\n#endif  // LEG_H\n", "{}"])
+def test_header_of_comments_has_no_code(repository, compare, guard):
+    code = "class Leg {};\n#define LEGS 4\n"
+    comments = "".join(f"// {line}\n" for line in code.splitlines())
+    files = {
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+        "arm/CMakeLists.txt": BUILD.format(install=INSTALL),
+        "arm/include/arm/leg.hpp": guard.format(code),
+    }
+    repository.commit(files)
+    repository.commit({"arm/include/arm/leg.hpp": guard.format(comments)})
+    lines = [line for subject in compare(repository, "HEAD~1..HEAD").subjects for line in sentences(subject)]
+    assert "the file has no code any more" in lines
+    repository.commit({"arm/include/arm/foot.hpp": guard.format(comments)})
+    lines = [line for subject in compare(repository, "HEAD~1..HEAD").subjects for line in sentences(subject)]
+    assert [line for line in lines if "header" in line] == ["header without code added: 'arm/foot.hpp'"]
+    repository.commit({"arm/include/arm/leg.hpp": guard.format(code)})
+    lines = [line for subject in compare(repository, "HEAD~1..HEAD").subjects for line in sentences(subject)]
+    assert not [line for line in lines if "no code" in line]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "is_told"),
     [

@@ -65,3 +65,35 @@ def test_remappings_of_a_node_that_replaces_an_include(repository, compare, old,
     changes = subject(compare(repository), path).changes
     (added,) = [change for change in changes if str(change.sentence).startswith("node 'eye/eye_node' added")]
     assert (None if added.reason is None else str(added.reason)) == reason
+
+
+@pytest.mark.parametrize(
+    ("started", "depend", "is_breaking"),
+    [
+        ("nav2_planner", "", False),
+        ("nav2_planner", "nav2_planner", True),
+        ("eye", "", True),
+    ],
+)
+def test_node_of_packages_that_are_installed_together_starts_as_the_others(
+    repository, compare, started, depend, is_breaking
+):
+    dependency = f"<exec_depend>{depend}</exec_depend>" if depend else ""
+    path = "lamp/launch/lamp.launch.xml"
+    text = FILE.replace("</launch>", f'<node pkg="{started}" exec="server"/>\n</launch>')
+    repository.commit({"lamp/package.xml": MANIFEST.format(dependency), path: text})
+    repository.write({path: text.replace("</launch>", '<node pkg="nav2_smoother" exec="server"/>\n</launch>')})
+    (change,) = subject(compare(repository), path).changes
+    assert (change.reason is not None) == is_breaking
+
+
+def test_missing_package_is_told_once(repository, compare):
+    path, values = "lamp/launch/lamp.launch.xml", "lamp/config/lamp.yaml"
+    parameters = "lamp:\n  ros__parameters:\n    rate: 5\n"
+    repository.commit({"lamp/package.xml": MANIFEST.format(""), path: FILE, values: parameters})
+    loaded = f"{parameters}    seeing:\n      plugin: eye_plugins::Seeing\n"
+    repository.write({path: FILE.replace("</launch>", '<node pkg="eye_plugins" exec="e"/></launch>'), values: loaded})
+    result = compare(repository)
+    assert [item.path for item, _ in result.breaking_changes] == [path]
+    assert any(str(change.sentence).startswith("lamp.ros__") for change in subject(result, values).changes)
+    assert result.new_findings == []

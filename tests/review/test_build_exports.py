@@ -198,9 +198,21 @@ def test_program_of_a_folder_without_a_manifest_was_not_found(repository, compar
     assert (removed in breaking(result)) is is_breaking
 
 
-@pytest.mark.parametrize(("name", "is_breaking"), [("gz-sim${GZ_VERSION}", False), ("gz-msgs${GZ_VERSION}", True)])
-def test_exported_name_with_a_variable_can_be_the_old_one(repository, compare, name, is_breaking):
-    cmake = "project(arm)\nset(GZ_VERSION ${gz-sim8_VERSION_MAJOR})\nament_export_dependencies(%s)\nament_package()\n"
+@pytest.mark.parametrize(
+    ("version", "name", "expected"),
+    [
+        ("7", "gz-sim${GZ_VERSION}", "exported dependencies: 'gz-sim8' replaced by 'gz-sim${GZ_VERSION}'"),
+        ("7", "gz-msgs${GZ_VERSION}", "exported dependencies removed: 'gz-sim8'"),
+        ("${gz-sim8_VERSION_MAJOR}", "gz-sim${GZ_VERSION}", None),
+    ],
+)
+def test_exported_name_with_a_variable_can_be_the_old_one(repository, compare, version, name, expected):
+    choice = f"set(GZ_VERSION {version})\nif($ENV{{GZ_VERSION}} STREQUAL 8)\n  set(GZ_VERSION 8)\nendif()\n"
+    cmake = f"project(arm)\n{choice}ament_export_dependencies(%s)\nament_package()\n"
     repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake % "gz-sim8"})
     repository.write({"arm/CMakeLists.txt": cmake % name})
-    assert breaking(compare(repository)) == (["exported dependencies removed: 'gz-sim8'"] if is_breaking else [])
+    result = compare(repository)
+    assert breaking(result) == ([expected] if expected and "removed" in expected else [])
+    found = sentences(subject(result, "arm/CMakeLists.txt")) if result.subjects else []
+    added = [f"exported dependencies added: '{name}'"] if breaking(result) else []
+    assert set(found) == {*added, *([] if expected is None else [expected])}

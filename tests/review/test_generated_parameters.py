@@ -84,7 +84,7 @@ def test_two_rules_that_allow_the_same_range_reject_nothing(repository, compare)
         ("  depth: {type: int, default_value: 3, validation: {gt_eq<>: [1]}}\n",
          "'arm/config/arm.yaml' still sets 'depth', which has no effect"),
         ("  gains:\n    __map_joints:\n      p: {type: double, default_value: 1.0}\n",
-         "'arm/config/arm.yaml' still sets 'gains.__map_joints.p', which has no effect"),
+         "'arm/config/arm.yaml' still sets 'gains.<joints>.p', which has no effect"),
         (DESCRIPTION[DESCRIPTION.index("  mode:") : DESCRIPTION.index("  depth:")],
          "values that launch files and parameter files give to 'mode' have no effect"),
     ],

@@ -336,3 +336,10 @@ def test_second_review_sees_what_changed_since_the_first_one(repository, compare
     lines = [line for found in compare(repository).subjects for line in sentences(found)]
     assert any("arm/screen" in line for line in lines)
     assert not any("arm/display" in line for line in lines)
+
+
+def test_line_about_an_added_module_with_actions_names_its_functions(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": FILE})
+    repository.write({"arm/arm/single.py": MIXIN + "\n\ndef make(name):\n    return Mixin.viewer(name)\n"})
+    review_subject = subject(compare(repository), "arm/arm/single.py")
+    assert sentences(review_subject) == ["functions for launch files added: 'make', 'Mixin'"]

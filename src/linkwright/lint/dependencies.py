@@ -178,6 +178,12 @@ def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinde
     )
 
 
+def list_companion_prefixes(package: str) -> tuple[str, ...]:
+    """Return the name prefixes of the packages that a metapackage brings together with a package."""
+    bringing = {metapackage for metapackage, prefix in _METAPACKAGE_PREFIXES if package.startswith(prefix)}
+    return tuple(dict.fromkeys(prefix for metapackage, prefix in _METAPACKAGE_PREFIXES if metapackage in bringing))
+
+
 def would_form_cycle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """Return whether depending on another package would form a cycle, which colcon refuses.
 

@@ -47,7 +47,7 @@ from linkwright.review.files.worlds.templates import TEMPLATE_SUFFIXES
 from linkwright.review.given_names import compare_parameters_with_sources
 from linkwright.review.launches.contents import launch_contents, started_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
-from linkwright.review.launches.helper_modules import compare_launch_helpers
+from linkwright.review.launches.helper_modules import compare_launch_helpers, helper_contents
 from linkwright.review.launches.spawned_models import find_spawned_models
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
@@ -272,6 +272,7 @@ LAUNCH_HELPER = KindRule(
     phrase("functions for launch files added"),
     phrase("functions for launch files removed"),
     phrase("launch files that import the module do not find it"),
+    contents=helper_contents,
 )
 """The rule for Python modules that make actions for launch files."""
 

@@ -98,7 +98,7 @@ from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.texts.folders import review_without_folder
 from linkwright.review.texts.secrets import hide_secrets
 from linkwright.review.unchanged_contents import keeps_contents
-from linkwright.review.undeclared_packages import mark_undeclared
+from linkwright.review.undeclared_packages import mark_undeclared, tell_missing_once
 from linkwright.review.users.followed_joints import relieve_followed_joints
 from linkwright.review.users.ignored_packages import relieve_ignored_packages
 from linkwright.review.users.left_collision_pairs import find_left_collision_pairs
@@ -235,6 +235,7 @@ class _Reviewer:
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         fixed = drop_unfixed_findings(self._versions, fixed, added, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
+        readable, added = tell_missing_once(self._versions.new, readable, added)
         readable, added = mark_failures(self._versions, readable, added, fixed, old_findings.diagnostics)
         return Review(
             self._versions.old.name,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
@@ -23,6 +23,16 @@ from linkwright.xacro.cache import read_document
 
 _CODES = frozenset({"LW812", "LW813"})
 """The findings about such packages. They become the reason of the line about the package."""
+_LAUNCH_CODE = "LW848"
+"""The finding about packages that launch files use although ``package.xml`` does not name them."""
+_LOADED_REASONS = frozenset(
+    {
+        "package.xml does not name '{name}', without which the launch file fails",
+        "package.xml does not name '{name}', without which the node does not start",
+        "package.xml does not name '{name}', without which the plugin is not loaded",
+    }
+)
+"""The reasons of breaking lines about such packages."""
 _ADDITIONS = (
     "packages imported for the first time: {names}",
     "packages included for the first time: {names}",
@@ -75,6 +85,42 @@ def mark_undeclared(
         told += marker.told
         result.append(replace(subject, changes=changes))
     return result, [finding for finding in findings if not any(finding is other for other in told)]
+
+
+def tell_missing_once(
+    version: Version, subjects: Sequence[Subject], findings: Sequence[Diagnostic]
+) -> tuple[list[Subject], list[Diagnostic]]:
+    """Return the subjects with one breaking line about each package that is missing, and the findings that add others.
+
+    Lines of launch files come before those of parameter files.
+    """
+    told: dict[tuple[str | None, str], str] = {}
+    for subject in sorted(subjects, key=lambda subject: subject.kind is not SubjectKind.LAUNCH_FILE):
+        for name in filter(None, map(_get_missing_package, subject.changes)):
+            told.setdefault((version.package_of(subject.new_path or subject.path), name), subject.path)
+    result = []
+    for subject in subjects:
+        folder, changes = version.package_of(subject.new_path or subject.path), list[Change]()
+        for change in subject.changes:
+            is_repeated = told.get((folder, _get_missing_package(change) or ""), subject.path) != subject.path
+            changes.append(replace(change, effect=Effect.CHANGED, reason=None) if is_repeated else change)
+        result.append(replace(subject, changes=changes))
+    return result, [finding for finding in findings if not _is_told(version, finding, told)]
+
+
+def _get_missing_package(change: Change) -> str | None:
+    """Return the package without which a node or plugin is not loaded, if this is the reason of a line."""
+    reason = change.reason
+    is_missing = reason is not None and reason.template in _LOADED_REASONS
+    return str(reason.arguments["name"]) if reason is not None and is_missing else None
+
+
+def _is_told(version: Version, finding: Diagnostic, told: Collection[tuple[str | None, str]]) -> bool:
+    """Return whether breaking lines name all packages of a finding about those that launch files use."""
+    if finding.code != _LAUNCH_CODE or finding.span is None:
+        return False
+    names = re.findall(r"'([^']+)'", str(getattr(finding.message, "arguments", {}).get("names", "")))
+    return bool(names) and all((version.package_of(finding.span.file), name) in told for name in names)
 
 
 class _Marker:

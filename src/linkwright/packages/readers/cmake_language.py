@@ -39,6 +39,7 @@ from linkwright.packages.readers.cmake_values import (
     evaluate_math,
     evaluate_string_command,
     extract_filename_component,
+    find_major_version,
     split_items,
 )
 
@@ -530,7 +531,8 @@ class CMakeProgram:
 
         def value(match: re.Match[str]) -> str:
             nonlocal remaining_length
-            value = self.variables.get(match[1], match[0])
+            value = self.variables.get(match[1], UNKNOWN)
+            value = find_major_version(match[1]) or match[0] if value == UNKNOWN else value
             remaining_length -= len(value)
             if remaining_length < 0:
                 raise _LimitExceededError(token.text)

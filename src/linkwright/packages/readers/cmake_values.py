@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 
 import regex
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.packages.readers.cmake_conditions import find_matches
 from linkwright.packages.readers.cmake_syntax import is_open
 
@@ -29,6 +30,10 @@ _OPERATORS: dict[type[ast.operator], Callable[[int, int], int]] = {
 }
 
 
+_MAJOR_VERSION = lazy_pattern(r".*?[^\d.](\d+)_VERSION_MAJOR")
+"""The variable with the version of a package of Gazebo, whose name ends with it."""
+
+
 class _NotKnownError(Exception):
     """Raised when the effect of a command cannot be evaluated without CMake."""
 
@@ -36,6 +41,12 @@ class _NotKnownError(Exception):
 def split_items(text: str) -> list[str]:
     """Return the items of a CMake list, without empty items."""
     return [item for item in text.split(";") if item]
+
+
+def find_major_version(variable: str) -> str | None:
+    """Return the value of a variable such as ``gz-sim8_VERSION_MAJOR``, which the name tells; None for any other."""
+    match = _MAJOR_VERSION.fullmatch(variable)
+    return None if match is None else match[1]
 
 
 def evaluate_list_command(operation: str, words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase, quoted
 from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.installed_paths import find_module
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.sources.details import compare_details
 from linkwright.review.sources.names import NameKind
 from linkwright.review.sources.reading import read_source_names, try_read_source
+from linkwright.review.versions import Version
 
 _Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
@@ -38,6 +40,13 @@ def compare_launch_helpers(pair: FilePair) -> None:
             text = phrase("'{old}' renamed to '{new}'", old=node.name, new=renamed[0])
         pair.add(text, pair.location(old.span(node), is_old=True), phrase("launch files that import it do not find it"))
     _compare_functions(pair)
+
+
+def helper_contents(version: Version, path: str) -> Phrase | None:
+    """Return the public functions and classes of a module, or None if it has none."""
+    names = read_source_names(version.file(path))
+    found = [item.name for kind in (NameKind.FUNCTION, NameKind.CLASS) for item in names.of_kind(kind)]
+    return joined_first(map(quoted, found), MAX_NAMES) if found else None
 
 
 def _compare_functions(pair: FilePair) -> None:

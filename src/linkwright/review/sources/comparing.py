@@ -121,7 +121,7 @@ class _SourcePair(PairedNames):
     def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-        changes = [*self.find_added_header(), *self.find_unbuilt()]
+        changes = [*self.find_added_header(), *self.find_emptied(), *self.find_unbuilt()]
         changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self.compare_rates(old_names, new_names)
         changes += self.find_unused_parameters(new_names)

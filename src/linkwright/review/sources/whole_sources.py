@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -45,6 +46,12 @@ from linkwright.review.sources.unbuilt_sources import find_exported_class, is_un
 from linkwright.review.sources.unread_parameters import is_only_declared
 from linkwright.review.sources.unused_parameters import find_unused_parameters, is_read_without_use
 from linkwright.review.sources.used_packages import compare_usage
+from linkwright.review.versions import Version
+
+_GUARD = re.compile(
+    r"^[ \t]*#[ \t]*(?:pragma[ \t]+once|ifndef[ \t]+(\w+)\s*#[ \t]*define[ \t]+\1[ \t]*|endif[ \t]*)$", re.MULTILINE
+)
+"""The lines that guard a header against repeated inclusion."""
 
 
 @dataclass(frozen=True)
@@ -196,8 +203,19 @@ class WholeSourcePair:
         if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self.is_interface(self.file.path):
             package = self.new.find_package(self.file.path) or ""
             include = find_include_text(self.new.version, package, self.file.path)
-            text = phrase("header added: other packages can include '{path}'", path=include)
+            if _has_code(self.new.version, self.file.path):
+                text = phrase("header added: other packages can include '{path}'", path=include)
+            else:
+                text = phrase("header without code added: '{path}'", path=include)
             yield Change(text, location=Location(self.file.path, 1, 1))
+
+    def find_emptied(self) -> Iterator[Change]:
+        """Yield a line if only comments are left of a source in C++."""
+        old_path, path = self.file.old_path, self.file.new_path
+        if old_path is None or path is None or not path.endswith(CPP_SUFFIXES):
+            return
+        if _has_code(self.old.version, old_path) and not _has_code(self.new.version, path):
+            yield Change(phrase("the file has no code any more"), location=Location(path, 1, 1))
 
     def find_unbuilt(self) -> Iterator[Change]:
         """Yield a line if no target builds an added source."""
@@ -283,3 +301,8 @@ def _list_texts(side: ChangedSources, path: str) -> list[str]:
     package = side.find_package(path)
     paths = side.version.paths(CPP_SUFFIXES, package) if package is not None else ()
     return [side.version.text(other) for other in paths if other != path]
+
+
+def _has_code(version: Version, path: str) -> bool:
+    """Return whether a source in C++ has more than comments and a guard against repeated inclusion."""
+    return bool(_GUARD.sub("", blank_comments(version.text(path))).strip())

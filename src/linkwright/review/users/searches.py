@@ -30,7 +30,7 @@ from linkwright.review.users.lost_display_classes import find_lost_display_class
 from linkwright.review.users.lost_displays import find_lost_displays
 from linkwright.review.users.lost_installs import find_lost_installs, find_uninstalled_paths
 from linkwright.review.users.lost_interfaces import find_lost_interfaces
-from linkwright.review.users.lost_libraries import find_lost_libraries
+from linkwright.review.users.lost_libraries import find_lost_libraries, find_unbuilt_libraries
 from linkwright.review.users.lost_lifecycles import find_lost_lifecycles
 from linkwright.review.users.lost_programs import find_lost_programs
 from linkwright.review.users.lost_registrations import find_lost_registrations
@@ -65,7 +65,7 @@ SEARCHES: tuple[Search, ...] = (
         find_uninstalled_paths,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
-    *(find_old_package_names, find_old_dependencies),
+    *(find_unbuilt_libraries, find_old_package_names, find_old_dependencies),
     *(
         find_passed_arguments,
         find_refused_arguments,

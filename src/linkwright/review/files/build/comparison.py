@@ -11,7 +11,6 @@ from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
-from linkwright.packages.readers.cmake_values import UNKNOWN
 from linkwright.review.changes import Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build.cmake_branches import is_test_condition
@@ -42,6 +41,8 @@ _KNOWN_MODULES = sys.stdlib_module_names | {
 """The modules of Python and of packages of ROS that programs of all packages import."""
 _NUMBER = re.compile(r"-?\d+\Z")
 """The number of the version at the end of the name of a package."""
+_REFERENCE = re.compile(r"\$\{[^{}]*\}")
+"""A variable with a value that only CMake knows."""
 _PATH_FOLDER = "bin"
 """The folder below the prefix that is in ``PATH``."""
 _PROGRAM_FOLDER_PREFIX = "lib/"
@@ -117,19 +118,17 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
         private = old.private_libraries if kind is FactKind.BUILT_LIBRARY else frozenset()
         _report_renamed(pair, kind, removed, added, find_renamed_targets(pair.versions, old, new), private)
-        if kind is FactKind.PACKAGE:
-            _report_other_versions(pair, removed, added)
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
+        else:
+            _report_replaced(pair, kind, removed, added)
         missing = [fact for fact in removed if names_missing_file(pair.versions.old, pair.old_path, fact)]
         removed = [fact for fact in removed if fact not in missing]
         _report_missing(pair, missing)
         unused = [
             fact
             for fact in removed
-            if fact.name in private
-            or any(_can_be_same(other.name, fact.name) for other in added)
-            or is_unused_export(pair.versions.old, pair.old_path, old, new, fact)
+            if fact.name in private or is_unused_export(pair.versions.old, pair.old_path, old, new, fact)
         ]
         _report_unpaired(pair, kind, unused, [], is_replaced=True)
         used = [fact for fact in removed if fact not in unused]
@@ -257,8 +256,8 @@ def _was_outside_packages(pair: FilePair, fact: Fact) -> bool:
 
 
 def _can_be_same(name: str, known: str) -> bool:
-    """Return whether a name with variables, such as ``gz-sim${}``, can be a known name."""
-    parts = name.split(UNKNOWN)
+    """Return whether a name with variables, such as ``gz-sim${VERSION}``, can be a known name."""
+    parts = _REFERENCE.split(name)
     return len(parts) > 1 and any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), known) is not None
 
 
@@ -329,16 +328,20 @@ def _is_same_component(old: str, new: str) -> bool:
     return old_class == new_class or (bool(old_scope) and old_scope == new_scope)
 
 
-def _report_other_versions(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
-    """Report packages whose name ends with another number, such as ``gz-sim8``, and remove them from both lists."""
+def _report_replaced(pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact]) -> None:
+    """Report names that take the place of a removed one, and remove them from both lists.
+
+    These are packages whose name ends with another number, such as ``gz-sim8``, and names with variables that can be
+    the old name.
+    """
     for old in list(removed):
-        base = _NUMBER.sub("", old.name)
+        base = _NUMBER.sub("", old.name) if kind is FactKind.PACKAGE else old.name
         new = next((fact for fact in added if base != old.name and _NUMBER.sub("", fact.name) == base), None)
+        new = new or next((fact for fact in added if _can_be_same(fact.name, old.name)), None)
         if new is not None:
             removed.remove(old)
             added.remove(new)
-            title = FactKind.PACKAGE.title
-            text = phrase("{kind}: '{old}' replaced by '{new}'", kind=title, old=old.name, new=new.name)
+            text = phrase("{kind}: '{old}' replaced by '{new}'", kind=kind.title, old=old.name, new=new.name)
             pair.add(text, pair.location(new.span), _find_guard_reason(pair, new))
 
 

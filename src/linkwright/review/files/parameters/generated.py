@@ -28,6 +28,8 @@ _PARAMETERS = "ros__parameters"
 _LOWER = {"lower_bounds": False, "gt_eq": False, "gt": True}
 _UPPER = {"upper_bounds": False, "lt_eq": False, "lt": True}
 """The rules with a limit, and whether the limit itself is not allowed."""
+_MAP = re.compile(r"\A__map_(\w+)\Z")
+"""A key that stands for each name in the values of another parameter."""
 _MAX_TEXT_CHARACTERS = 160
 _MIN_SIMILARITY = 0.8
 """The minimum ratio of equal characters of the names of a renamed parameter."""
@@ -273,7 +275,7 @@ def _read_parameters(root: yaml.Node) -> dict[str, _Parameter] | None:
 def _add_parameters(node: yaml.MappingNode, path: str, parameters: dict[str, _Parameter]) -> bool:
     """Add the parameters below a key, and return whether all values belong to parameters."""
     for key, value in node.value:
-        name = f"{path}.{key.value}".lstrip(".")
+        name = f"{path}.{_MAP.sub(r'<\1>', key.value)}".lstrip(".")
         if not isinstance(value, yaml.MappingNode):
             return False
         properties = {item.value: inner for item, inner in value.value}
@@ -345,7 +347,7 @@ def _find_user(version: Version, path: str, root: yaml.Node, lost: Mapping[str, 
 
 def _make_pattern(name: str) -> re.Pattern[str]:
     """Return the pattern of the names that a parameter has in parameter files, where a map has keys of its user."""
-    parts = [r"[^.]+" if part.startswith("__map_") else re.escape(part) for part in name.split(".")]
+    parts = [r"[^.]+" if part.startswith("<") else re.escape(part) for part in name.split(".")]
     return re.compile(r"\.".join(parts))
 
 
