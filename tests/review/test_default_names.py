@@ -66,6 +66,9 @@ def test_other_default_topic_or_frame_in_cpp_is_breaking(repository, compare, co
          "        self.pub = self.create_publisher(Bool, self.get_parameter('input').value, 1)"), NOT_FOUND),
         (("self.frame = self.declare_parameter('input', \"scan\").value\n"
          "        self.message.header.frame_id = self.frame"), NO_FRAME),
+        (("self.declare_parameter('input', \"scan\")\n"
+         "        self.topic: str = str(self.get_parameter('input').value).strip()\n"
+         "        self.pub = self.create_publisher(Bool, self.topic, 1)"), NOT_FOUND),
     ],
 )  # fmt: skip
 def test_other_default_topic_or_frame_in_python_is_breaking(repository, compare, code, reason):
@@ -283,3 +286,33 @@ def test_a_launch_file_sets_parameters_only_for_the_programs_that_it_names(repos
     (sentence,), found = find_changes(repository, compare, CPP.format(SUBSCRIPTION), files)
     assert sentence == 'parameter \'input\': default "scan" -> "points"'
     assert found == reasons
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        (CPP, 'auto t = declare_parameter<std::string>("input", "scan"); s_ = create_publisher<Bool>(t, 1);'),
+        (PYTHON, "t = self.declare_parameter('input', \"scan\").value; self.create_publisher(Bool, t, 1)"),
+    ],
+)
+@pytest.mark.parametrize("is_added", [True, False])
+def test_an_added_name_that_a_parameter_gives_is_told_with_the_parameter(repository, compare, text, code, is_added):
+    path = "arm/arm/arm.py" if text is PYTHON else "arm/src/arm.cpp"
+    repository.commit({**MANIFEST, **({} if is_added else {path: text.format("")})})
+    repository.write({path: text.format(code)})
+    (found,) = compare(repository).subjects
+    name = "'scan' (Bool, parameter 'input')"
+    names = {f"publishers added: {name}", f"publishers added: 'done' (Bool), {name}"}
+    assert len(names.intersection(sentences(found))) == 1
+    assert not any("computed" in line for line in sentences(found))
+
+
+def test_a_name_that_becomes_the_default_of_a_parameter_is_another_name(repository, compare):
+    path = "arm/arm/arm.py"
+    text = PYTHON.format("VALUE\n        self.create_subscription(Bool, NAME, self.stop, 1)")
+    repository.commit({**MANIFEST, path: text.replace("VALUE", "pass").replace("NAME", '"/scan"')})
+    value = "self.t = str(self.declare_parameter('input', '/points').value).strip()"
+    repository.write({path: text.replace("VALUE", value).replace("NAME", "self.t")})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "subscription '/scan' (Bool) comes from parameter 'input' now ('/points' by default)"
+    assert str(found.changes[0].reason) == "programs that use the name '/scan' do not find it"

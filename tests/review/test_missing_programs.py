@@ -52,6 +52,14 @@ def test_a_launch_file_that_starts_a_script_which_is_no_longer_installed_is_name
     assert "starts 'old.py' of 'lamp', which is no longer installed" in breaking(compare(repository))
 
 
+def test_a_package_below_another_one_of_its_name_hides_no_program(repository, compare):
+    write_package(repository, "ament_cmake", SCRIPTS, "a.launch.py", "old.py")
+    repository.commit({"lamp/simulation/package.xml": MANIFEST.format(name="lamp", tool="ament_cmake")})
+    body = SCRIPTS.replace("scripts/old.py ", "")
+    repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=body)})
+    assert "starts 'old.py' of 'lamp', which is no longer installed" in breaking(compare(repository))
+
+
 def test_a_script_in_the_sources_of_a_catkin_package_is_found(repository, compare):
     write_package(repository, "catkin", SCRIPTS, "a.launch", "old.py")
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="catkin", body="")})

@@ -28,7 +28,7 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.given_frames import find_given_frame, format_given
+from linkwright.review.sources.given_frames import find_given_frame, format_given, take_given
 from linkwright.review.sources.hardware_interfaces import find_description_without
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
@@ -444,12 +444,13 @@ class _SourcePair(PairedNames):
         removed_expressions = [
             item for item in removed_expressions if self.old.count_expressions(item) > self.new.count_expressions(item)
         ]
+        drop_replaceable(removed, added_expressions)
+        added += take_given(added_expressions, new_names)
         if added_expressions:
             text = phrase(
                 "{kind} with computed names added: {names}", kind=kind.plural, names=format_names(added_expressions)
             )
             yield self.make_change(text, added_expressions[0].span, self.new, None)
-            drop_replaceable(removed, added_expressions)
         if removed_expressions:
             text = phrase(
                 "{kind} with computed names removed: {names}",

@@ -1,9 +1,10 @@
-"""Find frames that a literal named before and that a parameter gives now."""
+"""Find names that parameters give: frames that a literal named before, and names of added publishers and the like."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
@@ -64,3 +65,23 @@ def format_given(item: SourceName, default: DefaultName) -> Phrase:
         parameter=default.parameter,
         default=default.name,
     )
+
+
+def take_given(expressions: list[SourceName], names: SourceNames) -> list[SourceName]:
+    """Return the names that expressions have by default, each with its parameter beside its type.
+
+    These expressions are removed from the list.
+    """
+    given = []
+    for item in list(expressions):
+        default = names.find_default(item)
+        if default is not None and default.name:
+            expressions.remove(item)
+            given.append(replace(item, name=default.name, type=_join_type(item.type, default.parameter)))
+    return given
+
+
+def _join_type(type_name: str, parameter: str) -> str:
+    """Return the type of a name, and the parameter that gives the name, for the brackets behind the name."""
+    text = f"parameter '{parameter}'"
+    return f"{type_name}, {text}" if type_name else text

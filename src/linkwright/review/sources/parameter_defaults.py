@@ -151,6 +151,8 @@ def find_parameter_default(python: PythonFile, node: ast.expr) -> ParameterDefau
             node = value.value
         elif isinstance(value, ast.Call) and isinstance(value.func, ast.Attribute) and not value.args:
             node = value.func.value
+        elif isinstance(value, ast.Call) and called_name(value) == "str" and len(value.args) == 1:
+            node = value.args[0]
         else:
             return None
     return None
@@ -206,6 +208,8 @@ def _find_assigned_value(python: PythonFile, attribute: ast.Attribute) -> ast.ex
     values = [
         node.value
         for node in ast.walk(python.tree)
-        if isinstance(node, ast.Assign) and any(ast.unparse(target) == text for target in node.targets)
+        if isinstance(node, (ast.Assign, ast.AnnAssign))
+        and node.value is not None
+        and any(ast.unparse(item) == text for item in (node.targets if isinstance(node, ast.Assign) else [node.target]))
     ]
     return values[0] if len(values) == 1 else None

@@ -349,13 +349,23 @@ def _find_shared_packages(versions: Versions) -> dict[str, tuple[RepositoryPacka
 
 @cached_in_review(maxsize=8)
 def find_packages(version: Version) -> dict[str, RepositoryPackage]:
-    """Return the packages that a version has exactly once, by name."""
+    """Return the packages that a version has exactly once, by name.
+
+    A package below another one of its name does not count: colcon and catkin do not search in the folder of a package.
+    """
     found: dict[str, list[RepositoryPackage]] = {}
     for folder in find_targets([version.root]).packages:
         name, path = package_name(folder), version.relative(folder)
         if name is not None and path is not None:
             found.setdefault(name, []).append(RepositoryPackage(version, "" if path == "." else path))
-    return {name: packages[0] for name, packages in found.items() if len(packages) == 1}
+    outer = {name: [item for item in packages if not _is_below(item, packages)] for name, packages in found.items()}
+    return {name: packages[0] for name, packages in outer.items() if len(packages) == 1}
+
+
+def _is_below(package: RepositoryPackage, others: Sequence[RepositoryPackage]) -> bool:
+    """Return whether the folder of a package is below that of another one."""
+    parents = PurePosixPath(package.folder).parents if package.folder else ()
+    return any(PurePosixPath(other.folder) in parents for other in others)
 
 
 def _read_nodes(version: Version, path: str) -> list[Entry]:
