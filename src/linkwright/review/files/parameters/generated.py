@@ -275,7 +275,8 @@ def _read_parameters(root: yaml.Node) -> dict[str, _Parameter] | None:
 def _add_parameters(node: yaml.MappingNode, path: str, parameters: dict[str, _Parameter]) -> bool:
     """Add the parameters below a key, and return whether all values belong to parameters."""
     for key, value in node.value:
-        name = f"{path}.{_MAP.sub(r'<\1>', key.value)}".lstrip(".")
+        part = _MAP.sub(r"<\1>", str(key.value))
+        name = f"{path}.{part}".lstrip(".")
         if not isinstance(value, yaml.MappingNode):
             return False
         properties = {item.value: inner for item, inner in value.value}
