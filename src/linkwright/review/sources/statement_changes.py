@@ -13,6 +13,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON
 from linkwright.review.sources.python.command_arguments import find_read_arguments
 from linkwright.review.sources.python.deferred_imports import find_deferred_imports
 from linkwright.review.sources.python.replaced_literals import find_replaced_literals
+from linkwright.review.sources.python.unreached_code import find_unreached_code
 from linkwright.review.sources.reading import try_parse_versions
 from linkwright.review.sources.statements.added_texts import TextsChange, find_constant_changes, find_key_changes
 from linkwright.review.sources.statements.attribute_changes import find_attribute_changes
@@ -89,7 +90,8 @@ def _compare_values(
         replaced = [*find_replaced_cpp_literals(*paths, new.get_names(file.new_path), lines)]
     else:
         parsed = try_parse_versions(*paths)
-        replaced = [] if parsed is None else [*find_replaced_literals(*parsed), *find_deferred_imports(*parsed)]
+        finders = find_replaced_literals, find_deferred_imports, find_unreached_code
+        replaced = [] if parsed is None else [item for find in finders for item in find(*parsed)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         reason = find_opposite_reason(text, new.get_names(file.new_path))
