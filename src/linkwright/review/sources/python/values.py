@@ -10,8 +10,10 @@ from itertools import product
 from pathlib import Path
 from typing import TypeGuard
 
+from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import UNKNOWN, PythonFile, Value
 from linkwright.review.sources.message_constants import read_imported_message_constants
+from linkwright.review.sources.python.method_aliases import replace_method_aliases
 from linkwright.review.sources.shared_constants import read_imported_constants
 
 _MAX_DEPTH = 10
@@ -22,6 +24,10 @@ _PLAIN_DECORATORS = frozenset({"property", "staticmethod", "classmethod"})
 
 class PythonSource(PythonFile):
     """A Python source that also resolves attributes which are assigned once, constants of other modules and results."""
+
+    def __init__(self, source: SourceText) -> None:
+        super().__init__(source)
+        replace_method_aliases(self.tree)
 
     @cached_property
     def _attributes(self) -> dict[str, ast.expr | None]:
