@@ -52,10 +52,11 @@ def test_words_added_to_a_list_and_values_of_the_context_are_read(review_changes
     assert not any(sentence.startswith("other code") for sentence in found)
 
 
-def test_old_names_of_the_arguments_of_nodes_are_no_change(review_changes):
+def test_old_names_of_the_arguments_of_nodes_change_no_node(review_changes):
     node = 'ComposableNode(package="arm", node_plugin="arm::Driver", node_name="d", node_namespace="n")'
     text = COMMAND.replace("    return [\n", f"    return [\n        {node},\n")
-    assert review_changes("arm.launch.py", text, node, node.replace("node_", "")) == ([], [])
+    line = "no longer uses 'node_plugin', 'node_name', 'node_namespace', which ROS 2 Galactic and later refuse"
+    assert review_changes("arm.launch.py", text, node, node.replace("node_", "")) == ([line], [])
 
 
 MESSAGES = """from launch import LaunchDescription

@@ -30,7 +30,6 @@ def generate_launch_description():
         ('LifecycleNode(package="debayer", executable="debayer", name="debayer")', "namespace"),
         ('ComposableNode(package="debayer")', "plugin"),
         ("ExecuteProcess(name='x')", "cmd"),
-        ('Node(package="debayer", node_executable="debayer")', None),
         ('Node(package="debayer", **settings)', None),
         ('LifecycleNode(package="debayer", executable="a", name="a", namespace="")', None),
     ],

@@ -24,7 +24,7 @@ def list_lines(repository, compare, old: str, new: str) -> list[str]:
 @pytest.mark.parametrize(
     ("old", "new", "change"),
     [
-        ("pass", "return False", "`return False` added"),
+        ("pass", "if goal.a:\n    return False", "`if goal.a: return False` added"),
         ("return True", "pass", "`return True` removed"),
         ("pass", "if goal.is_empty():\n    return", "`if goal.is_empty(): return` added"),
         ("pass", "image = self.to(goal, self.cv.BGR2RGB)", "`image = self.to(goal, self.cv.BGR2RGB)` added"),
