@@ -70,6 +70,8 @@ def find_unbuilt_libraries(versions: Versions, changed_files: Sequence[ChangedFi
         if folder is None or _PLUGIN_CLASS.search(text) is None:
             continue
         facts = read_package_facts(versions.new, folder)
+        if facts is None:
+            continue
         old_text = "" if file.old_path is None else without_comments(versions.old.text(file.old_path), file.old_path)
         old_names = {match["library"] for match in _LOADED.finditer(old_text)}
         matches = [match for match in _LOADED.finditer(text) if match["library"]]
@@ -77,7 +79,7 @@ def find_unbuilt_libraries(versions: Versions, changed_files: Sequence[ChangedFi
         old = None if old_folder is None else read_package_facts(versions.old, old_folder)
         lost = old_names - {match["library"] for match in matches}
         source = SourceText(str(versions.new.file(path)), text)
-        for match in matches if facts is not None else ():
+        for match in matches:
             name = match["library"]
             if name in old_names or not _is_unbuilt(facts, name):
                 continue
