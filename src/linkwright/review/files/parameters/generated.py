@@ -29,7 +29,7 @@ _LOWER = {"lower_bounds": False, "gt_eq": False, "gt": True}
 _UPPER = {"upper_bounds": False, "lt_eq": False, "lt": True}
 """The rules with a limit, and whether the limit itself is not allowed."""
 _MAP = re.compile(r"\A__map_(\w+)\Z")
-"""A key that stands for each name in the values of another parameter."""
+"""A key that represents each name in the values of another parameter."""
 _MAX_TEXT_CHARACTERS = 160
 _MIN_SIMILARITY = 0.8
 """The minimum ratio of equal characters of the names of a renamed parameter."""
