@@ -1,6 +1,6 @@
 """The topics, services and actions of nodes that a launch file can remap.
 
-The names of Linkwright's nodes come from ``linkwright.nodes.recorded_topics``. The names of other nodes come from the
+The names of Linkwright's nodes come from ``linkwright.nodes.recorded_names``. The names of other nodes come from the
 sources of the workspace.
 """
 
@@ -15,7 +15,7 @@ from linkwright.language.format import Document, Target
 from linkwright.language.includes import real_path
 from linkwright.language.programs import find_programs
 from linkwright.language.source_declarations import declared_topics
-from linkwright.nodes.recorded_topics import load_table
+from linkwright.nodes.recorded_names import load_topics
 from linkwright.packages.share_layout import find_source
 
 
@@ -60,7 +60,7 @@ def plain_name(name: str) -> str:
 
 def node_name(package: str, executable: str) -> str:
     """Return the default name of a program's node, or empty if it is unknown."""
-    entry = load_table().get(f"{package}/{executable}")
+    entry = load_topics().get(f"{package}/{executable}")
     return "" if entry is None else str(entry["node"])
 
 
@@ -82,7 +82,7 @@ def find_topics(document: Document, programs: Iterable[NodeProgram]) -> list[Nod
 
 
 def _recorded_topics(program: NodeProgram) -> Iterator[NodeTopic]:
-    for name, entry in load_table().items():
+    for name, entry in load_topics().items():
         package, _, executable = name.partition("/")
         if program.package in ("", package) and program.executable in ("", executable):
             yield from (NodeTopic(*topic) for topic in entry["topics"])

@@ -1,6 +1,6 @@
 """The parameters of nodes, plugins of nodes, and controllers, with types and defaults.
 
-The parameters of nodes and plugins come from ``linkwright.nodes.recorded_parameters``. The parameters of controllers
+The parameters of nodes and plugins come from ``linkwright.nodes.recorded_names``. The parameters of controllers
 come from the tables that the controllers declare, including controllers of other packages.
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.extensions import extensions
-from linkwright.nodes.recorded_parameters import load_table
+from linkwright.nodes.recorded_names import load_parameters
 
 CONTROLLER_MANAGER = "controller_manager"
 _CONTROLLERS = "linkwright.controllers"
@@ -118,13 +118,13 @@ def _parse_infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[Pa
 @cache
 def node_names() -> tuple[str, ...]:
     """Return the names of the nodes with known parameters."""
-    return tuple(load_table()["nodes"])
+    return tuple(load_parameters()["nodes"])
 
 
 @lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a node by its name, or an empty tuple if it is unknown."""
-    return _parse_infos(load_table()["nodes"].get(node, {}), node)
+    return _parse_infos(load_parameters()["nodes"].get(node, {}), node)
 
 
 @cache
@@ -134,7 +134,7 @@ def plugins() -> Mapping[str, Plugin]:
         kind.replace("::", "/"): Plugin(
             kind, entry["node"], entry["listed"], entry["purpose"], _parse_infos(entry["parameters"], kind)
         )
-        for kind, entry in load_table()["plugins"].items()
+        for kind, entry in load_parameters()["plugins"].items()
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from linkwright.nodes.recorded_parameters import find_recorded_plugin_type, find_recorded_type
+from linkwright.nodes.recorded_names import find_recorded_plugin_type, find_recorded_type
 from linkwright.review.files.parameters.yaml_values import YamlType, YamlValue, parse_yaml_value
 
 _CPP_TYPES = {

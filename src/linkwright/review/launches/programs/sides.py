@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 from enum import Enum
 from pathlib import Path
 
-from linkwright.nodes.recorded_topics import find_recorded_roles
+from linkwright.nodes.recorded_names import find_recorded_roles
 from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.programs.default_names import find_package_folders
 from linkwright.review.launches.programs.modules import find_program_modules
