@@ -159,13 +159,12 @@ class Plugin(_NamedView):
     __repr__ = __str__
 
 
-def _with_plugins(cls: type[_View]) -> type[_View]:
-    def plugins(self: _View) -> list[Plugin]:
-        return [Plugin(plugin) for plugin in self._content.plugins]
+class _PluginOwner(_NamedView):
+    """A view of an element with plugins."""
 
-    plugins.__doc__ = "Return the plugins of the element."
-    cls.plugins = plugins  # type: ignore[attr-defined]
-    return cls
+    def plugins(self) -> list[Plugin]:
+        """Return the plugins of the element."""
+        return [Plugin(plugin) for plugin in self._content.plugins]
 
 
 def _with_children(**classes: type[_View]) -> Callable[[type[_View]], type[_View]]:
@@ -202,8 +201,7 @@ def _add_functions_of_kind(cls: type[_View], kind: str, child_class: type[_View]
         setattr(cls, f"{kind}_{function.__name__}", function)
 
 
-@_with_plugins
-class Sensor(_NamedView):
+class Sensor(_PluginOwner):
     """A sensor of a link or joint."""
 
     def type(self) -> Sensortype:
@@ -286,8 +284,7 @@ class Link(_NamedView):
         return kinematic
 
 
-@_with_plugins
-class Model(_NamedView):
+class Model(_PluginOwner):
     """A model of links, joints and nested models."""
 
     def static(self) -> bool:
@@ -309,9 +306,8 @@ class Model(_NamedView):
 _with_children(link=Link, joint=Joint, frame=Frame, model=Model)(Model)
 
 
-@_with_plugins
 @_with_children(model=Model, frame=Frame, joint=Joint, light=Light)
-class World(_NamedView):
+class World(_PluginOwner):
     """A world of models."""
 
 
