@@ -8,7 +8,7 @@ import shlex
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, RegisterEventHandler, Shutdown
 from launch.conditions import IfCondition
-from launch.event_handlers import OnProcessExit, OnShutdown
+from launch.event_handlers import OnProcessExit, OnProcessStart, OnShutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
@@ -42,12 +42,17 @@ def start(context):
         parameters=[command.parameters],
         on_exit=[Shutdown()] if required else None,
     )
-    listed_command = ListedCommand(["gz", "sim", *shlex.split(arguments)])
+    listed_commands = []
+
+    def list_command(*_):
+        listed_commands.append(ListedCommand(["gz", "sim", *shlex.split(arguments)]))
 
     def close(*_):
-        listed_command.close()
+        for listed_command in listed_commands:
+            listed_command.close()
 
     return [
+        RegisterEventHandler(OnProcessStart(target_action=node, on_start=list_command)),
         RegisterEventHandler(OnProcessExit(target_action=node, on_exit=close)),
         RegisterEventHandler(OnShutdown(on_shutdown=close)),
         node,
