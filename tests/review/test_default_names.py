@@ -301,7 +301,7 @@ def test_an_added_name_that_a_parameter_gives_is_told_with_the_parameter(reposit
     repository.commit({**MANIFEST, **({} if is_added else {path: text.format("")})})
     repository.write({path: text.format(code)})
     (found,) = compare(repository).subjects
-    name = "'scan' (Bool, parameter 'input')"
+    name = "'scan' (Bool) from parameter 'input'"
     names = {f"publishers added: {name}", f"publishers added: 'done' (Bool), {name}"}
     assert len(names.intersection(sentences(found))) == 1
     assert not any("computed" in line for line in sentences(found))

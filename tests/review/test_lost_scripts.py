@@ -57,7 +57,7 @@ def test_command_that_runs_a_removed_executable_is_breaking(repository, compare,
     install = "install(PROGRAMS scripts/check.py DESTINATION lib/${PROJECT_NAME})\n"
     files = {"run.sh": f"{command} --fast\n", "arm/CMakeLists.txt": build + install}
     found = find_breaking(repository, compare, files, {PATH: None, "arm/CMakeLists.txt": build})
-    assert "starts 'check.py' of 'arm', which no longer exists" in found
+    assert "starts 'arm/check.py', which no longer exists" in found
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_command_that_starts_a_program_which_is_no_longer_installed_is_breaking(
 def test_command_that_starts_a_removed_launch_file_is_breaking(repository, compare, caller, command, new, is_lost):
     files = {caller: f"a:\n  command: bash -c '{command}'\n", "arm/launch/move.launch.py": "x = 1\n"}
     found = find_breaking(repository, compare, files, new)
-    assert ("starts 'move.launch.py' of 'arm', which no longer exists" in found) is is_lost
+    assert ("starts 'arm/move.launch.py', which no longer exists" in found) is is_lost
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_a_new_command_that_starts_what_its_package_never_had_is_breaking(reposi
     install = "install(PROGRAMS scripts/check.py DESTINATION lib/${PROJECT_NAME})\n"
     files = {"arm/CMakeLists.txt": build + install, "arm/launch/arm.launch.py": "", "start.sh": old or ""}
     found = find_breaking(repository, compare, files, {"start.sh": f"{old or ''}{command}\n"})
-    assert found == ([] if name is None else [f"starts '{name}' of 'arm', which does not exist"])
+    assert found == ([] if name is None else [f"starts 'arm/{name}', which does not exist"])
 
 
 GUARDED = """if {test}; then

@@ -41,7 +41,7 @@ def test_a_launch_file_that_starts_a_removed_script_is_named(repository, compare
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool=tool, body=SCRIPTS.replace("scripts/old.py ", ""))})
     (repository.root / "lamp/scripts/old.py").unlink()
     result = compare(repository)
-    assert "starts 'old.py' of 'lamp', which no longer exists" in breaking(result)
+    assert "starts 'lamp/old.py', which no longer exists" in breaking(result)
     assert "LW844" not in [finding.code for finding in result.new_findings]
 
 
@@ -49,7 +49,7 @@ def test_a_launch_file_that_starts_a_script_which_is_no_longer_installed_is_name
     write_package(repository, "ament_cmake", SCRIPTS, "a.launch.py", "old.py")
     body = SCRIPTS.replace("scripts/old.py ", "")
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=body)})
-    assert "starts 'old.py' of 'lamp', which is no longer installed" in breaking(compare(repository))
+    assert "starts 'lamp/old.py', which is no longer installed" in breaking(compare(repository))
 
 
 def test_a_package_below_another_one_of_its_name_hides_no_program(repository, compare):
@@ -57,7 +57,7 @@ def test_a_package_below_another_one_of_its_name_hides_no_program(repository, co
     repository.commit({"lamp/simulation/package.xml": MANIFEST.format(name="lamp", tool="ament_cmake")})
     body = SCRIPTS.replace("scripts/old.py ", "")
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=body)})
-    assert "starts 'old.py' of 'lamp', which is no longer installed" in breaking(compare(repository))
+    assert "starts 'lamp/old.py', which is no longer installed" in breaking(compare(repository))
 
 
 def test_a_script_in_the_sources_of_a_catkin_package_is_found(repository, compare):
@@ -72,7 +72,7 @@ def test_a_launch_file_that_starts_a_removed_executable_is_named(repository, com
     write_package(repository, "ament_cmake", body, "a.launch.xml", "old")
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=text)})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
-    assert found == ([] if text else ["starts 'old' of 'lamp', which no longer exists"])
+    assert found == ([] if text else ["starts 'lamp/old', which no longer exists"])
 
 
 @pytest.mark.parametrize("launch", LAUNCHES)
@@ -90,7 +90,7 @@ def test_a_changed_launch_file_that_starts_a_script_which_does_not_exist_is_name
     write_package(repository, "catkin" if launch == "a.launch" else "ament_cmake", body, launch, "old.py")
     repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="new.py")})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
-    assert found == (["starts 'new.py' of 'lamp', which does not exist"] if is_found else [])
+    assert found == (["starts 'lamp/new.py', which does not exist"] if is_found else [])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
@@ -110,7 +110,7 @@ def test_a_changed_launch_file_that_starts_a_script_which_is_not_executable_is_n
     (repository.root / "lamp/scripts/other.py").chmod(mode)
     repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="other.py")})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
-    assert found == (["starts 'other.py' of 'lamp', which is not executable"] if is_found else [])
+    assert found == (["starts 'lamp/other.py', which is not executable"] if is_found else [])
 
 
 EXECUTABLE = "add_executable(old old.cpp)\ninstall(TARGETS old DESTINATION lib/lamp)\n"
@@ -132,7 +132,7 @@ def test_a_changed_launch_file_that_starts_an_executable_which_nothing_builds_is
     write_package(repository, "catkin", body, "a.launch", "old")
     repository.write({"lamp/launch/a.launch": LAUNCHES["a.launch"].format(name="new")})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
-    assert found == (["starts 'new' of 'lamp', which does not exist"] if is_found else [])
+    assert found == (["starts 'lamp/new', which does not exist"] if is_found else [])
 
 
 def rename_package(repository: Repository, launch: str, text: str):
@@ -176,4 +176,4 @@ def test_a_launch_file_that_starts_a_program_which_its_renamed_package_has_lost_
     body = CMAKE.format(tool="ament_cmake", body=SCRIPTS.replace("scripts/old.py ", "").replace("lamp", "beacon"))
     repository.write({"lamp/CMakeLists.txt": body.replace("project(lamp)", "project(beacon)")})
     (repository.root / "lamp/scripts/old.py").unlink()
-    assert "starts 'old.py' of 'beacon', which no longer exists" in breaking(compare(repository))
+    assert "starts 'beacon/old.py', which no longer exists" in breaking(compare(repository))

@@ -49,3 +49,11 @@ def test_statement_after_a_new_exit_is_told(repository, compare, old, new, expec
     repository.commit({"a/scripts/pool.py": SOURCE.replace(old, new) + "print(2)\n"})
     result = compare(repository, "HEAD~1..HEAD")
     assert not [line for item in result.subjects for line in sentences(item) if "never reached" in line]
+
+
+def test_statements_before_the_new_exit_are_told_as_well(repository, compare):
+    repository.commit({"a/scripts/pool.py": SOURCE})
+    repository.commit({"a/scripts/pool.py": SOURCE.replace("wait(3)", "wait(120)\nexit()\nwait(3)")})
+    lines = sentences(subject(compare(repository, "HEAD~1..HEAD"), "a/scripts/pool.py"))
+    assert "`wait(3)` is never reached, because `exit()` comes before it" in lines
+    assert any("`wait(120)` added" in line for line in lines)

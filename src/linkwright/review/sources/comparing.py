@@ -378,12 +378,8 @@ class _SourcePair(PairedNames):
         if old_item.kind is NameKind.CLAIMED_INTERFACE:
             return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
-        if old_item.name.strip("/") == new_item.name.strip(
-            "/"
-        ):  # an absolute name that is relative now, or the reverse
-            return reason and phrase(
-                "if the node has a namespace, programs that use the name '{name}' do not find it", name=old_item.name
-            )
+        if old_item.name.strip("/") == new_item.name.strip("/"):
+            return None if reason is None else _make_scope_reason(old_item.name)  # absolute before, or absolute now
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
         path = self.file.path
@@ -572,3 +568,8 @@ class _SourcePair(PairedNames):
         reason = None if reason is None else phrase("by default, {reason}", reason=reason)
         text = format_rename(replace(old, name=old_default.name), replace(new, name=new_default.name))
         yield self.make_change(text, new.span, self.new, reason)
+
+
+def _make_scope_reason(name: str) -> Phrase:
+    """Return the reason why a name that becomes absolute or relative is breaking."""
+    return phrase("if the node has a namespace, programs that use the name '{name}' do not find it", name=name)

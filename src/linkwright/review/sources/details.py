@@ -54,9 +54,11 @@ def format_added_names(items: Sequence[SourceName]) -> Phrase:
     return joined_first(map(_format_added_name, items), MAX_NAMES)
 
 
-def _format_added_name(item: SourceName) -> str:
+def _format_added_name(item: SourceName) -> Phrase | str:
     policies = list_policies(item) if item.kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) else []
-    return format_name(replace(item, type=", ".join(filter(None, [item.type, *policies]))))
+    text = format_name(replace(item, type=", ".join(filter(None, [item.type, *policies]))))
+    parameter = dict(item.details).get(Detail.GIVEN_BY)
+    return text if parameter is None else phrase("{name} from parameter '{parameter}'", name=text, parameter=parameter)
 
 
 def format_rename(old: SourceName, new: SourceName) -> Phrase:

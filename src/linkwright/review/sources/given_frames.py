@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.review.sources.details import format_name
-from linkwright.review.sources.names import DefaultName, NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import DefaultName, Detail, NameKind, SourceName, SourceNames
 
 _KINDS = (NameKind.FRAME, NameKind.MESSAGE_FRAME, NameKind.FRAME_LOOKUP)
 _ASSIGNED = re.compile(r"(?P<target>[\w.\[\]>-]*\bframe_id_?)\s*=(?!=)\s*(?P<literal>[\"'](?P<text>[^\"'\n]*)[\"'])?")
@@ -68,7 +68,7 @@ def format_given(item: SourceName, default: DefaultName) -> Phrase:
 
 
 def take_given(expressions: list[SourceName], names: SourceNames) -> list[SourceName]:
-    """Return the names that expressions have by default, each with its parameter beside its type.
+    """Return the names that expressions have by default, each with its parameter among its details.
 
     These expressions are removed from the list.
     """
@@ -77,11 +77,6 @@ def take_given(expressions: list[SourceName], names: SourceNames) -> list[Source
         default = names.find_default(item)
         if default is not None and default.name:
             expressions.remove(item)
-            given.append(replace(item, name=default.name, type=_join_type(item.type, default.parameter)))
+            details = (*item.details, (Detail.GIVEN_BY, default.parameter))
+            given.append(replace(item, name=default.name, details=details))
     return given
-
-
-def _join_type(type_name: str, parameter: str) -> str:
-    """Return the type of a name, and the parameter that gives the name, for the brackets behind the name."""
-    text = f"parameter '{parameter}'"
-    return f"{type_name}, {text}" if type_name else text

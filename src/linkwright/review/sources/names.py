@@ -97,6 +97,7 @@ class Detail(Enum):
     BASES = phrase("base classes")
     CREATED_IN = phrase("created in")
     CONDITION = phrase("condition")
+    GIVEN_BY = phrase("parameter")
 
     @property
     def title(self) -> Phrase:

@@ -70,6 +70,7 @@ def compare_statements(
         changes += _compare_code(old, new, file, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
+        changes += _find_unreached_code(old, new, file.old_path, file.new_path)
     elif file.new_path is not None:
         changes += _compare_commands(old, new, file, changes)
         changes += _find_added_code(old, new, file.new_path, changes)
@@ -90,8 +91,7 @@ def _compare_values(
         replaced = [*find_replaced_cpp_literals(*paths, new.get_names(file.new_path), lines)]
     else:
         parsed = try_parse_versions(*paths)
-        finders = find_replaced_literals, find_deferred_imports, find_unreached_code
-        replaced = [] if parsed is None else [item for find in finders for item in find(*parsed)]
+        replaced = [] if parsed is None else [*find_replaced_literals(*parsed), *find_deferred_imports(*parsed)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         reason = find_opposite_reason(text, new.get_names(file.new_path))
@@ -189,6 +189,14 @@ def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFi
     texts = old.version.text(file.old_path or ""), new.version.text(file.new_path or "")
     for text, line in find_deprecations(*texts, is_cpp=file.path.endswith(CPP_SUFFIXES)):
         yield Change(text, location=Location(file.path, line, 1))
+
+
+def _find_unreached_code(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the statements of a Python source that a new exit keeps from running."""
+    paths = old.version.file(old_path), new.version.file(new_path)
+    parsed = try_parse_versions(*paths) if new_path.endswith(PYTHON_SUFFIX) else None
+    for text, span in () if parsed is None else find_unreached_code(*parsed):
+        yield Change(text, location=Location(new_path, span.line, span.column))
 
 
 def _compare_code(

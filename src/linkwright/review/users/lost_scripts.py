@@ -105,7 +105,7 @@ def _never_existed(versions: Versions, package: str, name: str, *, is_launch: bo
 
 
 def _make_missing_change(package: str, name: str, path: str, line: int) -> Change:
-    text = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
+    text = phrase("starts '{package}/{name}', which does not exist", name=name, package=package)
     return _make_change(text, path, line)
 
 
@@ -198,7 +198,7 @@ class _ShellTests:
 
 def _make_start_change(package: str, name: str, path: str, line: int) -> Change:
     return _make_change(
-        phrase("starts '{name}' of '{package}', which no longer exists", name=name, package=package), path, line
+        phrase("starts '{package}/{name}', which no longer exists", name=name, package=package), path, line
     )
 
 

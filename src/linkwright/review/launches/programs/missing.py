@@ -38,10 +38,10 @@ _GENERATION = re.compile(
 )
 """A command of a build file that can make a script with another name."""
 _STARTS = (
-    "starts '{name}' of '{package}', which does not exist",
-    "starts '{name}' of '{package}', which is no longer installed",
-    "starts '{name}' of '{package}', which no longer exists",
-    "starts '{name}' of '{package}', which is not executable",
+    "starts '{package}/{name}', which does not exist",
+    "starts '{package}/{name}', which is no longer installed",
+    "starts '{package}/{name}', which no longer exists",
+    "starts '{package}/{name}', which is not executable",
 )
 _FINDING = "LW844"
 """The finding about a program that a launch file starts and that does not exist."""
@@ -190,11 +190,11 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
                 continue
             change = None
             if is_unexecutable:
-                change = phrase("starts '{name}' of '{package}', which is not executable", name=name, package=package)
+                change = phrase("starts '{package}/{name}', which is not executable", name=name, package=package)
             elif old.has(name) and package in changed_packages:
                 change = _make_removal_change(package, name, is_left=name in new.names)
             elif is_first and (is_script or not new.may_compute_names):
-                change = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
+                change = phrase("starts '{package}/{name}', which does not exist", name=name, package=package)
             if change is not None:
                 reported.add(entry.name)
                 location = Location(path, entry.span.line, entry.span.column)
@@ -333,8 +333,8 @@ def _get_missing(finding: Diagnostic) -> tuple[str, str, object]:
 
 def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:
     if is_left:
-        return phrase("starts '{name}' of '{package}', which is no longer installed", name=name, package=package)
-    return phrase("starts '{name}' of '{package}', which no longer exists", name=name, package=package)
+        return phrase("starts '{package}/{name}', which is no longer installed", name=name, package=package)
+    return phrase("starts '{package}/{name}', which no longer exists", name=name, package=package)
 
 
 def _find_shared_packages(versions: Versions) -> dict[str, tuple[RepositoryPackage, RepositoryPackage]]:

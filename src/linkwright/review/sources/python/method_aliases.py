@@ -35,6 +35,8 @@ def _replace_aliases(function: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
     bound = Counter(node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load))
     bound.update(node.arg for node in nodes if isinstance(node, ast.arg))
     for node in nodes:
-        method = methods.get(node.func.id) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else None
-        if method is not None and isinstance(node, ast.Call) and bound[ast.unparse(node.func)] == 1:
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name) or bound[node.func.id] != 1:
+            continue
+        method = methods.get(node.func.id)
+        if method is not None:
             node.func = ast.copy_location(ast.Attribute(method.value, method.attr, ast.Load()), node.func)
