@@ -79,6 +79,7 @@ KNOWN: dict[str, str] = {
     "review/reviewing.py": "get_context",
     "shell/programs.py": "platform",
     "shell/session.py": "/bin/sh /dev/tty CDLL platform preexec_fn setpgid",
+    "simulation/nodes/process_list.py": "platform start_new_session",
     "simulation/rendering/opengl.py": "platform",
     "sweep/workers.py": "get_context platform pthread_sigmask",
     "vision/cameras/video.py": "/dev/",
