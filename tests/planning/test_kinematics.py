@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -9,9 +11,12 @@ from linkwright.geometry.arrays import matrix_from_pose
 from linkwright.kinematics import KinematicTree
 from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.robot_model import PlacedShape, RobotModel
 from tests.planning.arms import arm
 
 pytestmark = pytest.mark.extra("arm")
+
+IDENTITY = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 
 
 def random_positions(count: int, seed: int = 1) -> list[np.ndarray]:
@@ -41,6 +46,15 @@ class TestRobotModel:
         arm().model.move(arm().positions(left=0.02))
         names, positions = arm().model.all_positions()
         assert dict(zip(names, positions, strict=True))["right"] == 0.02
+
+    def test_equal_hulls_share_a_mesh(self) -> None:
+        corners = np.array(list(product((-0.1, 0.1), repeat=3)))
+        shapes = {
+            "upper_arm": [PlacedShape(corners, IDENTITY)],
+            "tool": [PlacedShape(corners.copy(), IDENTITY), PlacedShape(2.0 * corners, IDENTITY)],
+        }
+        model = RobotModel(arm().robot, shapes).mujoco_model
+        assert (model.ngeom, model.nmesh) == (3, 2)
 
 
 class TestChainSolver:

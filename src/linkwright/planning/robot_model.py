@@ -6,6 +6,7 @@ child's body. MuJoCo computes the frames and Jacobians of an arm in a few micros
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -152,14 +153,19 @@ def body_name(link: str) -> str:
 
 
 def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> Any:
-    """Add a collision shape to a body, and return its geom."""
+    """Add a collision shape to a body, and return its geom.
+
+    Equal hulls share a mesh, because MuJoCo takes seconds to compute the hull of many points.
+    """
     kinds, shape = load_mujoco().mjtGeom, placed_shape.shape
     geom = body.add_geom(mass=0.0)
     set_pose(geom, placed_shape.pose)
     if isinstance(shape, np.ndarray):
-        mesh = spec.add_mesh(name=f"hull {len(spec.meshes)}", uservert=shape.ravel().tolist())
-        mesh.inertia = load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL  # Thin meshes have too little volume.
-        geom.type, geom.meshname = kinds.mjGEOM_MESH, mesh.name
+        name = f"hull {hashlib.sha256(np.ascontiguousarray(shape)).hexdigest()}"
+        if spec.mesh(name) is None:
+            mesh = spec.add_mesh(name=name, uservert=shape.ravel().tolist())
+            mesh.inertia = load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL  # Thin meshes have too little volume.
+        geom.type, geom.meshname = kinds.mjGEOM_MESH, name
     elif isinstance(shape, Box):
         geom.type, geom.size = kinds.mjGEOM_BOX, [length / 2 for length in shape.size]
     elif isinstance(shape, Sphere):

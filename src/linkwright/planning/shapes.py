@@ -9,7 +9,6 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.arrays import Array, row_from_pose
 from linkwright.geometry.hull import convex_hull
-from linkwright.geometry.meshes import TriangleMesh
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.planning.robot_model import PlacedShape
@@ -54,7 +53,7 @@ def _convert_to_parts(collision: Collision, meshes: MeshLibrary) -> list[PlacedS
         if parts := split_into_hulls(mesh.vertices, mesh.faces):
             center = np.concatenate(parts).mean(axis=0)
             return [PlacedShape(corners, pose, center) for corners in parts]
-        corners = hull_corners(_used_vertices(mesh))
+        corners = hull_corners(mesh.used_vertices)
         return [] if corners is None else [PlacedShape(corners, pose)]
     shape = convert_collision(collision, meshes)
     return [] if shape is None else [shape]
@@ -71,7 +70,7 @@ def convert_collision(collision: Collision, meshes: MeshLibrary) -> PlacedShape 
     shape, pose = collision.geometry, row_from_pose(collision.origin)
     if isinstance(shape, Mesh):
         mesh = meshes.load(shape, collision.element)
-        points = _used_vertices(mesh)
+        points = mesh.used_vertices
         return PlacedShape(points, pose) if _has_volume(points) else None
     sizes: tuple[float, ...]
     if isinstance(shape, Box):
@@ -92,11 +91,6 @@ def hull_corners(points: Array) -> Array | None:
     """
     faces = convex_hull(points) if _has_volume(points) else None
     return None if faces is None else points[np.unique(faces)]
-
-
-def _used_vertices(mesh: TriangleMesh) -> Array:
-    vertices: Array = mesh.vertices[np.unique(mesh.faces)]
-    return vertices
 
 
 def _has_volume(points: Array) -> bool:
