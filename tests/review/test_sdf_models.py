@@ -122,14 +122,14 @@ def test_counters_are_not_rounded(repository, compare):
 @pytest.mark.parametrize(
     ("replacements", "expected"),
     [
-        ((("<mass>2<", "<mass>4<"),), ["mass 4 -> 6 kg", "center of mass 0.05 x 0 x 0.5 -> 0.06667 x 0 x 0.3333 m"]),
-        ((("<pose>0 0 1 ", "<pose>0 0 2 "),), ["center of mass 0.05 x 0 x 0.5 -> 0.05 x 0 x 1 m"]),
+        ((("<mass>2<", "<mass>4<"),), ["mass 4 -> 6 kg", "center of mass 0.05 0 0.5 -> 0.06667 0 0.3333 m"]),
+        ((("<pose>0 0 1 ", "<pose>0 0 2 "),), ["center of mass 0.05 0 0.5 -> 0.05 0 1 m"]),
         ((("<size>1 0.5", "<size>2 0.5"),), ["size 1 x 0.5 x 0.25 -> 2 x 0.5 x 0.25 m"]),
         ((('type="fixed"', 'type="revolute"'),), ["moving joints 1 -> 2"]),
         ((('<model name="cart">', '<model name="cart"><static>true</static>'),),
          ["mass 4 -> 0 kg"]),
         ((("</model>", "<link name='tip'/></model>"),),
-         ["links 2 -> 3", "mass 4 -> 5 kg", "center of mass 0.05 x 0 x 0.5 -> 0.04 x 0 x 0.4 m"]),
+         ["links 2 -> 3", "mass 4 -> 5 kg", "center of mass 0.05 0 0.5 -> 0.04 0 0.4 m"]),
     ],
 )  # fmt: skip
 def test_totals_of_a_model(repository, compare, replacements, expected):

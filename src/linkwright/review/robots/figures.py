@@ -17,7 +17,7 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.frames import to_matrix
-from linkwright.review.quantities import compare_quantity
+from linkwright.review.quantities import compare_quantity, compare_size
 from linkwright.review.robots.reach import Chain, compare_reaches, have_equal_distances
 from linkwright.urdf import Collision, Link, Mesh, Robot, Visual
 from linkwright.xmltree import Element
@@ -38,7 +38,7 @@ def compare_figures(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     for name, unit, measure in _QUANTITIES:
         yield from compare_quantity(name, unit, measure(old), measure(new))
     if old.visuals_key is None or old.visuals_key != new.visuals_key:
-        yield from compare_quantity(phrase("size"), "m", old.size, new.size)
+        yield from compare_size(old.size, new.size)
     if old.meshes_key is None or old.meshes_key != new.meshes_key:
         yield from _compare_mesh_files(old.mesh_files, new.mesh_files)
     old_chains, new_chains = old.chains(), new.chains()

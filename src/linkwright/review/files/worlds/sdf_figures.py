@@ -13,7 +13,7 @@ from linkwright.geometry.single import IDENTITY
 from linkwright.picture import Scene
 from linkwright.picture.scene_mesh import Mesh
 from linkwright.review.changes import Figure
-from linkwright.review.quantities import compare_quantity
+from linkwright.review.quantities import compare_quantity, compare_size
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links, pose_of
 from linkwright.sdf.links import Inertial
 from linkwright.sdf.models import Model
@@ -37,7 +37,7 @@ def compare_model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterat
     for name, unit, measure in _QUANTITIES:
         yield from compare_quantity(name, unit, *map(measure, measures))
     if scenes:
-        yield from compare_quantity(phrase("size"), "m", *map(_measure_scene, scenes))
+        yield from compare_size(*map(_measure_scene, scenes))
 
 
 class _Measures:
