@@ -48,6 +48,11 @@ launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
          launch_in_condition.replace("    actions.append(driver)",
                                      "    actions.append(driver)\n        print('ready')"),
          ["other code added: print('ready')"]),
+        (launch_text("camera = Node(package='arm', executable='camera')", "actions.append(camera)"),
+         launch_text(f"if {CHECK}:", "    camera = Node(package='arm', executable='camera')",
+                     "else:", "    camera = Node(package='arm', executable='recorder')", "actions.append(camera)"),
+         [f"node 'arm/camera': condition if `{CHECK}` added",
+          f"node 'arm/recorder' added: unless `{CHECK}`"]),
     ],
 )  # fmt: skip
 def test_if_statement_is_a_condition_of_the_actions_in_it(review_changes, old, new, expected):

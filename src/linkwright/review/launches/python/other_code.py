@@ -137,6 +137,21 @@ def _find_names_outside(tree: ast.AST, covered: Collection[int]) -> Iterator[str
             pending += ast.iter_child_nodes(node)
 
 
+def _find_target_names(node: ast.Assign) -> list[str | None]:
+    """Return the names that a statement assigns; None for another target."""
+    return [target.id if isinstance(target, ast.Name) else None for target in node.targets]
+
+
+def _find_action_names(tree: ast.AST, covered: Collection[int]) -> set[str]:
+    """Return the names to which only actions are assigned, such as one of two nodes in each branch."""
+    stored = Counter(
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    )
+    made = (node for node in ast.walk(tree) if isinstance(node, ast.Assign) and id(node.value) in covered)
+    assigned = Counter(name for node in made for name in _find_target_names(node) if name is not None)
+    return {name for name, count in assigned.items() if count == stored[name]}
+
+
 def _find_called_function(call: ast.Call) -> str | None:
     """Return the function that an action calls to make others, or None if it gets more than the context."""
     if called_name(call).rpartition(".")[2] != _CALLING_CLASS:
@@ -170,6 +185,7 @@ class _CodeNormalizer:
         self._called_functions = {name for name in names if name is not None}
         self._texts: dict[int, str] = {}
         self._names_outside = set(_find_names_outside(python.tree, covered))
+        self._action_names = _find_action_names(python.tree, covered)
 
     def format_node(self, node: ast.AST) -> str:
         """Return a part of the code in comparable form; empty if it only makes actions."""
@@ -194,9 +210,13 @@ class _CodeNormalizer:
         if isinstance(node, ast.Expr):
             return "" if isinstance(node.value, ast.Constant) else self.format_node(node.value)
         if isinstance(node, ast.Name):
+            if node.id in self._action_names:
+                return ""
             assigned = self._python.assigned_expression(node.id)
             return f"name {node.id}" if assigned is None else self.format_node(assigned)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
+            return ""
+        if isinstance(node, ast.Assign) and self._action_names.issuperset(_find_target_names(node)):
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _COMBINING_CALLS:
             return self._format_group(node)
