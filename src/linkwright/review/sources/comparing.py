@@ -85,6 +85,7 @@ from linkwright.review.sources.statements.function_changes import (
 from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
 from linkwright.review.sources.unchanged_sources import make_user_reason
+from linkwright.review.sources.unused_publishers import is_unused_publisher
 from linkwright.review.versions import Versions
 
 _MAIN = "main"
@@ -303,10 +304,15 @@ class _SourcePair(PairedNames):
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
-        lost = [item for item in removed if item.name not in non_public]
+        old_path = self.file.old_path or self.file.path
+        unused = [item for item in removed if is_unused_publisher(item, old_names, self.old.version, old_path)]
+        if unused:
+            text = phrase("publishers that published nothing removed: {names}", names=format_names(unused))
+            yield self.make_change(text, unused[0].span, self.old, None)
+        lost = [item for item in removed if item.name not in non_public and item not in unused]
         if lost:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
-            used = describe_new_user(text, lost, self.old, self.new, self.file.old_path or self.file.path)
+            used = describe_new_user(text, lost, self.old, self.new, old_path)
             reason = None if used is not None else self._find_removal_reason(lost, old_names)
             change = self.make_change(used or text, lost[0].span, self.old, reason)
             topics = [item.name for item in lost if kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION)]
