@@ -46,6 +46,8 @@ def find_breaking_lines(repository, compare):
         ("arm/launch/arm.launch",
          '<launch><node pkg="controller_manager" type="spawner" name="s" args="hand_controller"/></launch>', True),
         ("arm/scripts/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', True),
+        ("arm/src/grip.cpp", 'auto p = node->create_publisher<Float64>("hand_controller/commands", 10);\n', True),
+        ("arm/src/grip.cpp", 'std::string hand_controller = "hand_controller/commands";\n', False),
         ("arm/config/moveit_controllers.yaml",
          ("moveit_simple_controller_manager:\n  controller_names: [arm_controller, hand_controller]\n"
          "  hand_controller: {type: FollowJointTrajectory}\n"), True),

@@ -42,14 +42,15 @@ def breaking_reasons(result):
 @pytest.mark.parametrize(
     ("path", "old", "new", "sentence", "reason"),
     [
-        ("talker.cpp", '"chatter"', '"talk"', RENAMED, "'listener.cpp' still subscribes to 'chatter'"),
-        ("listener.cpp", '"chatter"', '"talk"', "subscription 'chatter' renamed to 'talk'",
-         "'talker.cpp' still publishes 'chatter'"),
+        ("talker.cpp", '"chatter"', '"speech"', RENAMED.replace("talk", "speech"),
+         "'listener.cpp' still subscribes to 'chatter'; nothing in the repository subscribes to 'speech'"),
+        ("listener.cpp", '"chatter"', '"speech"', "subscription 'chatter' renamed to 'speech'",
+         "'talker.cpp' still publishes 'chatter'; nothing in the repository publishes 'speech'"),
         ("listener.cpp", '"home"', '"go_home"', "service 'home' (Trigger) renamed to 'go_home' (Trigger)",
-         "'talker.cpp' still calls 'home'"),
+         "'talker.cpp' still calls 'home'; nothing in the repository calls 'go_home'"),
         ("talker.cpp", '"home"', '"go_home"',
          "service client 'home' (Trigger) renamed to 'go_home' (Trigger)",
-         "'listener.cpp' still serves 'home'"),
+         "'listener.cpp' still serves 'home'; nothing in the repository serves 'go_home'"),
     ],
 )  # fmt: skip
 def test_a_renamed_name_is_breaking_if_the_other_end_keeps_it(repository, compare, path, old, new, sentence, reason):

@@ -48,7 +48,7 @@ class ChangedSources:
         self.version = version
         self._new_packages = new_packages
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
-        self._unchanged_by_package: dict[str, UnchangedSources] = {}
+        self._unchanged_by_package: dict[str | None, UnchangedSources] = {}
         self._used_by_package: dict[str, UsedPackages] = {}
         self._moved_code: dict[str, MovedCode] | None = None
         self._renamed_words: dict[str, str] | None = None
@@ -331,6 +331,25 @@ class ChangedSources:
             yield from ((other, names) for other, names in self._names.items() if self.find_package(other) == package)
             yield from self._get_unchanged(package).list_sources(text)
 
+    def list_all_sources(self, *texts: str) -> Iterator[tuple[str, SourceNames]]:
+        """Yield the paths and names of the sources of the version. Unchanged ones must contain one of several texts."""
+        yield from self._names.items()
+        for package in (*self._packages, None):
+            yield from self._get_unchanged(package).list_sources(*texts)
+
+    def find_names(self, path: str) -> SourceNames | None:
+        """Return the names in a source, changed or not, or None if the version does not have it."""
+        file = self.version.file(path)
+        return read_source_names(file) if file.is_file() else None
+
+    @cached_property
+    def _packages(self) -> list[str]:
+        """The folders of all packages."""
+        paths = self.version.paths((MANIFEST, ROSBUILD_MANIFEST))
+        pure_paths = (PurePosixPath(path) for path in paths)
+        names = {path.parent.as_posix() for path in pure_paths if path.name in (MANIFEST, ROSBUILD_MANIFEST)}
+        return sorted("" if name == "." else name for name in names)
+
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
@@ -342,7 +361,7 @@ class ChangedSources:
             return None
         return self._used_by_package.setdefault(package, UsedPackages(self.version, package, self._new_packages))
 
-    def _get_unchanged(self, package: str) -> UnchangedSources:
+    def _get_unchanged(self, package: str | None) -> UnchangedSources:
         if package not in self._unchanged_by_package:
             self._unchanged_by_package[package] = UnchangedSources(self.version, package, self._names)
         return self._unchanged_by_package[package]

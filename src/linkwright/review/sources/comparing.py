@@ -46,6 +46,7 @@ from linkwright.review.sources.names import (
 )
 from linkwright.review.sources.new_users import describe_new_user
 from linkwright.review.sources.node_namespaces import have_same_full_name
+from linkwright.review.sources.other_ends import describe_new_end, find_left_reason, is_served
 from linkwright.review.sources.other_nodes import (
     find_other_node_reason,
     has_only_in_other_nodes,
@@ -84,7 +85,7 @@ from linkwright.review.sources.statements.function_changes import (
 )
 from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
-from linkwright.review.sources.unchanged_sources import make_user_reason
+from linkwright.review.sources.unused_publishers import is_unused_publisher
 from linkwright.review.versions import Versions
 
 _MAIN = "main"
@@ -303,10 +304,15 @@ class _SourcePair(PairedNames):
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
-        lost = [item for item in removed if item.name not in non_public]
+        old_path = self.file.old_path or self.file.path
+        unused = [item for item in removed if is_unused_publisher(item, old_names, self.old.version, old_path)]
+        if unused:
+            text = phrase("publishers that published nothing removed: {names}", names=format_names(unused))
+            yield self.make_change(text, unused[0].span, self.old, None)
+        lost = [item for item in removed if item.name not in non_public and item not in unused]
         if lost:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
-            used = describe_new_user(text, lost, self.old, self.new, self.file.old_path or self.file.path)
+            used = describe_new_user(text, lost, self.old, self.new, old_path)
             reason = None if used is not None else self._find_removal_reason(lost, old_names)
             change = self.make_change(used or text, lost[0].span, self.old, reason)
             topics = [item.name for item in lost if kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION)]
@@ -363,8 +369,7 @@ class _SourcePair(PairedNames):
         if lost[0].kind is NameKind.PARAMETER:
             readers = ((item.name, self.new.find_undeclared_reader(item, self.file.path)) for item in lost)
             return next((make_reader_reason(name, reader) for name, reader in readers if reader is not None), reason)
-        users = ((item, self.new.find_user(item, path, self.old)) for item in (lost if reason is not None else ()))
-        return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
+        return reason if reason is None else find_left_reason(lost, self.old, self.new, path) or reason
 
     def _find_rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
         """Return the reason why a new name is breaking, or None.
@@ -380,17 +385,14 @@ class _SourcePair(PairedNames):
         reason = self._find_removal_reason([old_item], names)
         if old_item.name.strip("/") == new_item.name.strip("/"):
             return None if reason is None else _make_scope_reason(old_item.name)  # absolute before, or absolute now
-        if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
-            return reason
         path = self.file.path
-        if self.new.find_user(new_item, path) is not None or self.new.has_counterpart(new_item):
-            return None
-        server = self.new.find_user(old_item, path)
-        if server is not None:
-            return make_user_reason(old_item.kind, server, old_item.name)
-        if not new_item.name:
-            return None  # the default of a parameter, whose new value is not known here
-        return phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        if old_item.kind in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
+            if is_served(new_item, self.new, path):
+                return None
+            reason = find_left_reason([old_item], None, self.new, path)
+            if reason is None and new_item.name:  # else the default of a parameter, whose new value is not known here
+                reason = phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        return describe_new_end(reason, old_item, new_item, self.old, self.new, path)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 

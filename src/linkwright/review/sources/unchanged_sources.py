@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import find_python_packages, read_package_facts
 from linkwright.review.sources.cpp.text import blank_comments
@@ -46,11 +47,11 @@ class UnchangedSources:
 
     Args:
         version: the version of the repository.
-        package: the folder of the package.
+        package: the folder of the package; None for the sources outside of packages.
         changed: the paths of the changed sources.
     """
 
-    def __init__(self, version: Version, package: str, changed: Collection[str]) -> None:
+    def __init__(self, version: Version, package: str | None, changed: Collection[str]) -> None:
         self._version = version
         self._package = package
         self._changed = changed
@@ -101,10 +102,10 @@ class UnchangedSources:
             (path for path in paths if any(is_same_topic(item, other) for other in self._read_names(path, kind))), None
         )
 
-    def list_sources(self, text: str) -> Iterator[tuple[str, SourceNames]]:
-        """Yield the paths and names of the sources that contain a text."""
+    def list_sources(self, *texts: str) -> Iterator[tuple[str, SourceNames]]:
+        """Yield the paths and names of the sources that contain one of several texts."""
         for path, content in self._texts.items():
-            if text in content:
+            if any(text in content for text in texts):
                 self._read_names(path, NameKind.NODE)
                 yield path, self._names[path]
 
@@ -119,7 +120,7 @@ class UnchangedSources:
 
     @cached_property
     def _texts(self) -> dict[str, str]:
-        paths = self._version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), self._package)
+        paths = self._version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), self._package or "")
         texts = {path: self._version.text(path) for path in paths if self._is_searched(PurePosixPath(path))}
         return {path: text for path, text in texts.items() if not _only_makes_actions(path, text)}
 
@@ -129,7 +130,9 @@ class UnchangedSources:
         return path.as_posix() not in self._changed and self._is_built(path)
 
     def _is_built(self, path: PurePosixPath) -> bool:
-        """Return whether the package can build or install a source."""
+        """Return whether the package can build or install a source, or whether it is outside of packages."""
+        if self._package is None:
+            return self._version.package_of(path.as_posix(), (MANIFEST, ROSBUILD_MANIFEST)) is None
         if path.suffix == PYTHON_SUFFIX:
             folders = self._python_folders
             return folders is None or any(path.is_relative_to(folder) for folder in folders)
@@ -139,23 +142,25 @@ class UnchangedSources:
     @cached_property
     def _python_folders(self) -> list[PurePosixPath] | None:
         """The Python files and folders that the package installs, or None if they are unknown."""
-        facts = read_package_facts(self._version, self._package)
-        has_cmake = self._version.file(f"{self._package}/{CMAKE_FILE}".lstrip("/")).is_file()
+        package = self._package or ""
+        facts = read_package_facts(self._version, package)
+        has_cmake = self._version.file(f"{package}/{CMAKE_FILE}".lstrip("/")).is_file()
         if has_cmake or facts is None or not facts.is_complete:
             return None
-        names = find_python_packages(self._version, self._package)
+        names = find_python_packages(self._version, package)
         paths = [f"{part}{name}" for name in names for part in ("", "src/")]
-        return [PurePosixPath(self._package) / path for path in (*paths, *facts.files.values())]
+        return [PurePosixPath(package) / path for path in (*paths, *facts.files.values())]
 
     @cached_property
     def _built_sources(self) -> frozenset[str] | None:
         """The C++ sources that the package builds, or None if they are unknown."""
-        facts = read_package_facts(self._version, self._package)
-        text = self._version.text(f"{self._package}/{CMAKE_FILE}".lstrip("/"))
+        package = self._package or ""
+        facts = read_package_facts(self._version, package)
+        text = self._version.text(f"{package}/{CMAKE_FILE}".lstrip("/"))
         if facts is None or not facts.targets or _SOURCE_SEARCH.search(text):
             return None
         paths = (source for parts in facts.targets.values() for source in parts.sources)
-        return frozenset((PurePosixPath(self._package) / path).as_posix() for path in paths)
+        return frozenset((PurePosixPath(package) / path).as_posix() for path in paths)
 
 
 def _only_makes_actions(path: str, text: str) -> bool:
@@ -172,9 +177,9 @@ def get_counterpart(kind: NameKind) -> NameKind | None:
 def is_same_topic(item: SourceName, other: SourceName) -> bool:
     """Return whether two names mean the same topic, service or action.
 
-    Namespaces are ignored.
+    Namespaces are ignored. Private names are those of one node.
     """
-    return item.name.lstrip("/") == other.name.lstrip("/")
+    return item.name.lstrip("/") == other.name.lstrip("/") and not item.name.startswith("~")
 
 
 def make_user_reason(kind: NameKind, path: str, name: str) -> Phrase:

@@ -1,4 +1,4 @@
-"""Find launch files, scripts and configurations of MoveIt that still name removed controllers."""
+"""Find launch files, sources and configurations of MoveIt that still name removed controllers."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameters.names import find_all_controllers
 from linkwright.review.files.parameters.yaml_values import read_yaml_values
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.sources.reading import read_source_names
 from linkwright.review.texts.list_changes import list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -30,7 +33,7 @@ def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFil
     lost = {name: path for name, path in old.items() if name not in new}
     if not lost:
         return
-    paths = versions.new.paths((*_SETTINGS, *_READER_SUFFIXES))
+    paths = versions.new.paths((*_SETTINGS, *_READER_SUFFIXES, *CPP_SUFFIXES))
     files = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
     for path in files:
         if path.endswith(_SETTINGS):
@@ -40,6 +43,11 @@ def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFil
         if path.endswith(_SETTINGS):
             yield from ((path, change) for change in _find_in_settings(path, versions.new.text(path), lost))
             continue
+        if path.endswith((*CPP_SUFFIXES, PYTHON_SUFFIX)):
+            found = list(_find_in_source(versions.new, path, lost))
+            yield from ((path, change) for change in found)
+            if found or path.endswith(CPP_SUFFIXES):
+                continue  # a source in Python may also load controllers
         text = versions.new.text(path)
         text = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
         for name, source in lost.items():
@@ -60,6 +68,17 @@ def _find_in_settings(path: str, text: str, lost: Mapping[str, str]) -> Iterator
         for name in (item.strip("/") for item in list_items(value.text)):
             if name in lost:
                 yield _make_change(name, lost[name], Location(path, value.line, value.column))
+
+
+def _find_in_source(version: Version, path: str, lost: Mapping[str, str]) -> Iterator[Change]:
+    """Yield the changes about removed controllers whose topics, services or actions a source uses."""
+    text = version.text(path)
+    left = {name for name in lost if f"{name}/" in text}
+    for item in read_source_names(version.file(path)).names if left else ():
+        name = next((name for name in sorted(left) if item.name.lstrip("/").startswith(f"{name}/")), None)
+        if item.kind in COMMUNICATION_KINDS and name is not None:
+            left.remove(name)
+            yield _make_change(name, lost[name], Location(path, item.span.line, item.span.column))
 
 
 def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:

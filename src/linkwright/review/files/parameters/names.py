@@ -411,10 +411,13 @@ def _make_plugin_reason(parameter: str, names: Collection[str]) -> Phrase:
 
 def _read_controller_types(values: Mapping[str, YamlValue]) -> dict[str, str]:
     """Return the classes of the controllers of a file, without their packages, by the name of the controller."""
+    return {name: _CLASS_SEPARATOR.split(text)[-1] for name, text in read_controller_classes(values).items()}
+
+
+def read_controller_classes(values: Mapping[str, YamlValue]) -> dict[str, str]:
+    """Return the classes that a controller manager loads, as its file writes them, by the name of the controller."""
     matches = ((_CONTROLLER_TYPE.fullmatch(name), value) for name, value in values.items())
-    return {
-        match["controller"]: _CLASS_SEPARATOR.split(value.text)[-1] for match, value in matches if match is not None
-    }
+    return {match["controller"]: value.text for match, value in matches if match is not None}
 
 
 def find_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
