@@ -181,24 +181,19 @@ class ChangedSources:
             if (other.kind, other.type) == (item.kind, item.type)
         }
 
-    def lacks_in_changed(self, item: SourceName, path: str) -> bool:
-        """Return whether no other changed source has a name.
+    def count_owners(self, item: SourceName, path: str) -> int:
+        """Return the number of other changed sources that have a name.
 
-        If one has it, the name has moved. A parameter of dynamic_reconfigure only moves to another description.
+        A parameter of dynamic_reconfigure only counts in other descriptions.
         """
-        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
-            return False
         is_description = path.endswith(DYNAMIC_SUFFIX)
         others = (
             names
             for other, names in self._names.items()
             if other != path and (other.endswith(DYNAMIC_SUFFIX) or not is_description)
         )
-        return not any(
-            (known.kind, get_comparison_name(known)) == (item.kind, get_comparison_name(item))
-            for names in others
-            for known in names.names
-        )
+        key = get_comparison_name(item)
+        return sum(any(get_comparison_name(known) == key for known in names.of_kind(item.kind)) for names in others)
 
     def lacks(self, item: SourceName, path: str) -> bool:
         """Return whether a name is in no changed source and in no source of the package.
@@ -220,7 +215,7 @@ class ChangedSources:
         package = self.find_package(path)
         if package is None:
             return True
-        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
+        if item.kind is NameKind.PARAMETER and self.generates(item.name, path):
             return False
         others = self._get_unchanged(package)
         is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
@@ -347,7 +342,7 @@ class ChangedSources:
             self._unchanged_by_package[package] = UnchangedSources(self.version, package, self._names)
         return self._unchanged_by_package[package]
 
-    def _generates(self, name: str, path: str) -> bool:
+    def generates(self, name: str, path: str) -> bool:
         """Return whether code is generated for a parameter.
 
         The generator reads a description beside the source.

@@ -175,7 +175,7 @@ class _SourcePair(PairedNames):
         is_new_node = self.file.old_path is None and (new_names.makes_node or path.endswith(DYNAMIC_SUFFIX))
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
-            lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
+            lacks = self._did_not_lose  # report everything that a new node uses, even if another node uses it
         is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1
         if is_sole_node and only_new and self.old.lacks(next(iter(only_new.values())), old_path):
             removed = list(only_old.values())  # even if another node of the package has the old name
@@ -212,6 +212,12 @@ class _SourcePair(PairedNames):
         yield from self._report_given_frame(removed, old_names, new_names)
         removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
+
+    def _did_not_lose(self, item: SourceName, path: str) -> bool:
+        """Return whether no changed source lost a name of a new node, so that it did not move to the node."""
+        if item.kind is NameKind.PARAMETER and self.old.generates(item.name, path):
+            return False
+        return self.old.count_owners(item, path) <= self.new.count_owners(item, path)
 
     def _rename_type(self, item: SourceName, new: SourceName) -> SourceName:
         """Return an old name with the new name of the package of its type, unless the new source has the old one."""
