@@ -100,7 +100,7 @@ def read_included_headers(path: Path) -> list[str]:
     except OSError:
         return []
     package = enclosing_package(path.parent)
-    base = (path.parent if package is None else package[1]).resolve()
+    base = (_find_built_folder(path) if package is None else package[1]).resolve()
     folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
     texts = []
     for match in _INCLUDE.finditer(text):
@@ -112,6 +112,12 @@ def read_included_headers(path: Path) -> list[str]:
         if file is not None and file.stat().st_size <= _MAX_BYTES:
             texts.append(blank_disabled(file.read_text("utf-8", errors="replace")))
     return texts
+
+
+def _find_built_folder(path: Path) -> Path:
+    """Return the folder that CMake builds a source in no package from, or else the folder of the source."""
+    folders = list(path.parents)[:_MAX_FOLDERS]
+    return next((folder for folder in folders if (folder / "CMakeLists.txt").is_file()), path.parent)
 
 
 def _find_neighbor(package: Path, name: str) -> Path | None:
