@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from types import MappingProxyType
 
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
+from linkwright.review.sources.cpp.base_classes import find_base_sources
 from linkwright.review.sources.cpp_bases import ClassMethods
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
@@ -56,6 +57,12 @@ class ChangedSources:
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    def get_inherited(self, path: str | None) -> list[SourceNames]:
+        """Return the names in the sources of the base classes of a C++ source."""
+        if path is None or not path.endswith(CPP_SUFFIXES):
+            return []
+        return [read_source_names(base) for base in find_base_sources(self.version.file(path))]
 
     @property
     def paths(self) -> Collection[str]:

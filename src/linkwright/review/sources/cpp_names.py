@@ -9,6 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.conditions import find_cpp_conditions
+from linkwright.review.sources.cpp.base_classes import find_base_sources, read_code
 from linkwright.review.sources.cpp.callbacks import find_message_type, find_service_type
 from linkwright.review.sources.cpp.callers import CallerNames
 from linkwright.review.sources.cpp.calls import (
@@ -19,7 +20,6 @@ from linkwright.review.sources.cpp.calls import (
     Call,
     find_calls,
 )
-from linkwright.review.sources.cpp.declarations import read_declarations
 from linkwright.review.sources.cpp.declared_groups import find_declared_groups
 from linkwright.review.sources.cpp.helper_nodes import is_helper_node
 from linkwright.review.sources.cpp.lifecycle import LifecycleCallbacks
@@ -47,6 +47,7 @@ from linkwright.review.sources.cpp.values import (
 from linkwright.review.sources.cpp.variable_types import VariableTypes
 from linkwright.review.sources.cpp.yaml_keys import find_yaml_keys
 from linkwright.review.sources.cpp_constant_texts import ConstantTexts
+from linkwright.review.sources.cpp_declarations import read_declarations
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.gazebo_topics import find_gazebo_topics
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -207,6 +208,7 @@ class _Reader:
         """
         kind, type_name = call.kind, call.type
         name = " ".join(self._text[slice(*offsets)].split())
+        name = self._texts.expand(name, offsets[0])
         is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         details: tuple[tuple[Detail, str], ...] = ()
         is_param = call.function == "param" and len(call.arguments) == _PARAM_ARGUMENTS
@@ -217,7 +219,6 @@ class _Reader:
             type_name = type_name or self._find_callback_type(kind, texts)
             details = tuple(self._find_qos(call, texts))
         if is_ros:
-            name = name if name in self._names.defaults else self._texts.find_sum(name, offsets[0])
             self._names.expressions.append(self._make_name(kind, name, type_name, *offsets, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
@@ -225,7 +226,9 @@ class _Reader:
         is_parameter = kind is NameKind.PARAMETER
         parameter = None
         if not is_parameter:
-            parameter = find_cpp_parameter_default(self._text, expression, self._find_known_default)
+            parameter = find_cpp_parameter_default(
+                [self._text, *self._base_texts], expression, self._find_known_default
+            )
         if parameter is not None:
             self._names.add_default(kind, expression, *parameter)
         return parameter is not None
@@ -357,6 +360,11 @@ class _Reader:
         return [blank_comments(text) for text in read_included_headers(Path(self._source.name))]
 
     @cached_property
+    def _base_texts(self) -> Sequence[str]:
+        """The headers and sources of the base classes of the repository, without comments."""
+        return [read_code(path) for path in find_base_sources(Path(self._source.name))]
+
+    @cached_property
     def _node_bases(self) -> Collection[str]:
         """The classes of included headers that derive from a node, to which derived classes give its name."""
         return {match["name"] for text in self._headers for match in _NODE_CLASS.finditer(text)}
@@ -431,7 +439,8 @@ class _Reader:
 
     @cached_property
     def _texts(self) -> ConstantTexts:
-        return ConstantTexts(Path(self._source.name), self._text, self._headers, self._initial_values)
+        path = Path(self._source.name)
+        return ConstantTexts(path, self._text, self._headers, self._initial_values, lambda: self._base_texts)
 
     @cached_property
     def _initial_values(self) -> InitialValues:
