@@ -174,3 +174,68 @@ def test_a_macro_gets_the_type_of_a_topic(repository, compare, old, new, expecte
     repository.write({"arm/src/arm.cpp": PUBLISHING.replace(old, new)})
     (found,) = compare(repository).subjects
     assert expected in sentences(found)
+
+
+LIBRARY_HEADER = """template <class Command>
+class Commands {
+  template <class Message>
+  void make(std::shared_ptr<rclcpp::Node> node, const std::string & topic, size_t depth) {
+    MADE
+  }
+};
+"""
+LIBRARY_SOURCE = """#include "arm/commands.hpp"
+template <>
+void Commands<Drive>::init(std::shared_ptr<rclcpp::Node> node) {
+  make<arm_msgs::msg::Drive>(node, "drive", 1);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "out_ = std::make_unique<MessagePublisher<Command, Message>>(node, topic, depth);",
+        "using Type = MessagePublisher<Command, Message>; out_ = std::make_unique<Type>(node, topic, depth);",
+        "out_.reset(new lib::MessagePublisher<Message>(node, topic, depth));",
+    ],
+)
+def test_a_template_of_another_library_makes_a_publisher(repository, compare, made):
+    files = {"arm/include/arm/commands.hpp": LIBRARY_HEADER.replace("MADE", made), "arm/src/arm.cpp": LIBRARY_SOURCE}
+    repository.commit({**MANIFEST, **files})
+    repository.write({"arm/src/arm.cpp": LIBRARY_SOURCE.replace('"drive"', '"move"')})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publisher 'drive' (Drive) renamed to 'move' (Drive)"]
+
+
+@pytest.mark.parametrize(
+    ("made", "is_told"),
+    [
+        ('new realtime_tools::RealtimePublisher<arm_msgs::State>(nh_, "state", 4)', True),
+        ('new realtime_tools::RealtimePublisher<arm_msgs::State>(publisher, "state", 4)', False),
+        ('new StatePublisher<arm_msgs::State>(nh_, "state", 4)', False),
+    ],
+)
+def test_a_template_without_a_node_or_of_the_source_makes_no_publisher(repository, compare, made, is_told):
+    text = "template <class T> class StatePublisher {};\nArm::Arm() { MADE }\n"
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text.replace("MADE", "")})
+    repository.write({"arm/src/arm.cpp": text.replace("MADE", f"out_.reset({made});")})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert ("publishers added: 'state' (State)" in lines) == is_told
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ('declare_parameter<double>(node, "gain")', "parameters added: 'gain'"),
+        ('create_publisher<std_msgs::msg::Bool>(node_, "state", 1)', "publishers added: 'state' (Bool)"),
+        ("create_publisher<std_msgs::msg::Bool>(node_name, 1)",
+         "publishers with computed names added: 'node_name' (Bool)"),
+    ],
+)  # fmt: skip
+def test_a_free_function_may_take_the_node_first(repository, compare, call, expected):
+    text = "void read(rclcpp::Node & node) {{ f(); {} }}\n"
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text.format("")})
+    repository.write({"arm/src/arm.cpp": text.format(f"{call};")})
+    (found,) = compare(repository).subjects
+    assert expected in sentences(found)

@@ -204,3 +204,11 @@ def test_an_added_source_of_another_program_gets_the_names_of_the_first(review_n
     assert ("subscriptions added: 'stop' (String)" in lines) == is_told
     lines, reasons = review_node({}, {"arm/src/hardware.cpp": None, "arm/CMakeLists.txt": CMAKE.format("")})
     assert not [line for line in (*lines, *reasons) if "'stop'" in line]
+
+
+@pytest.mark.parametrize(("kept", "is_told"), [('"state"', True), ('"other"', False)])
+def test_an_added_node_has_a_name_that_another_changed_node_keeps(review_node, kept, is_told):
+    new = PYTHON_NODE.replace("speed = 1", "speed = 2").replace('"state"', kept)
+    added = PYTHON_NODE.replace("Drive", "Arm").replace('"drive"', '"arm"')
+    lines, _ = review_node({"arm/drive.py": PYTHON_NODE}, {"arm/drive.py": new, "arm/arm.py": added})
+    assert ("publishers added: 'state' (String)" in lines) == is_told

@@ -81,3 +81,76 @@ def test_parameter_file_with_few_of_the_values_is_another_file(repository, compa
     repository.commit({"arm/package.xml": PACKAGE_XML, old: OLD_VALUES})
     repository.write({old: None, path: NEW_VALUES.replace("text", "another")})
     assert {found.path for found in compare(repository).subjects} == {old, path}
+
+
+OLD_HEADER = """class Tool {
+ public:
+  Tool();
+  void init(const std::string & name);
+};
+"""
+NEW_HEADER = """#include <memory>
+#include <string>
+// The tool at the flange.
+struct Limits { double low; double high; };
+class Tool {
+ public:
+  Tool(std::shared_ptr<Node> node, const std::string & name, Limits limits);
+  double width() const;
+ private:
+  Limits limits_;
+};
+"""
+BUILD = "project(arm)\ninstall(DIRECTORY include/ DESTINATION include)\nament_package()\n"
+LOST = "functions removed: 'Tool::init' (const std::string&)"
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "is_pair"),
+    [
+        ("include/arm/parts/tool.hpp", NEW_HEADER, True),
+        ("include/arm/parts/Tool.hpp", NEW_HEADER, True),
+        ("include/arm/parts/gripper.hpp", NEW_HEADER, False),
+        ("include/arm/parts/tool.hpp", NEW_HEADER.replace("Tool", "Other"), False),
+    ],
+)
+def test_a_header_with_the_class_of_a_removed_one_is_compared_with_it(repository, compare, path, text, is_pair):
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    repository.commit(
+        {"arm/package.xml": manifest, "arm/CMakeLists.txt": BUILD, "arm/include/arm/tool.hpp": OLD_HEADER}
+    )
+    repository.commit({"arm/include/arm/tool.hpp": None, f"arm/{path}": text})
+    result = compare(repository, "HEAD~1..HEAD")
+    lines = [line for found in result.subjects if found.path == f"arm/{path}" for line in sentences(found)]
+    assert (LOST in lines) == is_pair
+
+
+OLD_NODE = """import rospy
+from std_msgs.msg import String
+
+
+class Tool:
+    def __init__(self):
+        self.p = rospy.Publisher('state', String, queue_size=1)
+"""
+NEW_NODE = """#!/usr/bin/env python3
+# The tool at the flange.
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+
+class Tool(Node):
+    def __init__(self):
+        super().__init__('tool')
+        self.state = self.create_publisher(String, 'status', 10)
+"""
+
+
+def test_a_python_source_with_the_class_of_a_removed_one_is_compared_with_it(repository, compare):
+    repository.commit(
+        {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/tool.py": OLD_NODE}
+    )
+    repository.commit({"arm/scripts/tool.py": None, "arm/arm/tool.py": NEW_NODE})
+    found = subject(compare(repository, "HEAD~1..HEAD"), "arm/arm/tool.py")
+    assert "publisher 'state' (String) renamed to 'status' (String)" in sentences(found)

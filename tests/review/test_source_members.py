@@ -97,6 +97,29 @@ def test_a_member_that_a_header_declares_has_the_name_that_the_source_gives(
     assert sentences(found) == [expected]
 
 
+def test_a_client_whose_name_a_parameter_gives_is_added(repository, compare):
+    source = """#include <ros/ros.h>
+Arm::Arm() {
+  std::string server = nh_.param<std::string>("server", "reach");
+}
+"""
+    made = "  client_.reset(new actionlib::SimpleActionClient<arm_msgs::ReachAction>(server, false));\n}"
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace("}", made)})
+    (found,) = compare(repository).subjects
+    assert "action clients added: 'reach' (ReachAction) from parameter 'server'" in sentences(found)
+
+
+def test_a_node_that_existed_before_its_manifest_is_not_added(repository, compare):
+    header = "class Base : public rclcpp::Node {\n public:\n  Base(const std::string & name) : Node(name) {}\n};\n"
+    source = '#include "base.hpp"\nclass Arm : public Base {\n  Arm() : Base("arm") { publish("a"); }\n};\n'
+    repository.commit(
+        {"arm/CMakeLists.txt": "project(arm)\n", "arm/include/base.hpp": header, "arm/src/arm.cpp": source}
+    )
+    repository.write({**MANIFEST, "arm/src/arm.cpp": source.replace('publish("a")', 'publish("b")')})
+    assert not [line for found in compare(repository).subjects for line in sentences(found) if "nodes added" in line]
+
+
 def test_parameters_of_default_member_initializers_in_a_header_are_compared(repository, compare):
     header = 'class Arm : public Node {\n  double rate_ = declare_parameter("rate", 10.0);\n};\n'
     repository.commit({**MANIFEST, "arm/include/arm/arm.hpp": header})

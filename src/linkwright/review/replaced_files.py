@@ -1,7 +1,8 @@
-"""Find launch files, parameter files and worlds that replaced others and that git does not recognize as renamed."""
+"""Find launch files, parameter files, worlds and sources that git does not recognize as renamed."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from difflib import SequenceMatcher
@@ -13,10 +14,18 @@ from linkwright.review.files.parameters.yaml_values import read_yaml_text, read_
 from linkwright.review.files.worlds.comparing import read_world_models
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.programs.sources import try_read_outline
+from linkwright.review.sources.cpp.text import blank_comments
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
 
 _WORLD_SUFFIXES = (".world", ".sdf")
 _YAML_SUFFIXES = (".yaml", ".yml")
+_SEPARATOR = re.compile(r"[_-]")
+_PYTHON_CLASS = re.compile(r"^class\s+(\w+)", re.MULTILINE)
+_CPP_CLASS = re.compile(
+    r"^[ \t]*(?:class|struct)\s+(?:[A-Z]\w*_[A-Z]+\s+)?(\w+)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{", re.MULTILINE
+)
+_CPP_METHOD = re.compile(r"^(?!\s)[^;{}()#\n]*?\b(\w+)\s*(?:<[^<>;{}()]*>)?\s*::\s*~?\w+\s*\(", re.MULTILINE)
 _MIN_NAME_SIMILARITY = 0.7
 _MIN_SHARE_OF_VALUES = 0.8
 """The minimum share of the values of the smaller file that both files have."""
@@ -32,13 +41,16 @@ def join_replaced_files(versions: Versions, files: Sequence[ChangedFile]) -> lis
 
     Git recognizes renamed files by the share of equal lines, also if the added one lacks many of them. Launch files of
     a folder are one if they start the same programs, and worlds if they have the same models; parameter files of a
-    package, if one has nearly all values of the other one.
+    package, if one has nearly all values of the other one, and its sources, if both define a class.
     """
     pairs: dict[str, str] = {}
     for is_candidate, read, are_alike, get_group in (
         (is_launch_file, _read_programs, _have_equal_keys, _get_folder),
         (_is_parameter_file, _read_values, _have_common_values, _get_package),
         (_is_world, _read_models, _have_equal_keys, _get_folder),
+        (_is_header, _read_classes, _have_common_keys, _get_package),
+        (_is_cpp_source, _read_classes, _have_common_keys, _get_package),
+        (_is_python_source, _read_classes, _have_common_keys, _get_package),
     ):
         removed = [file.old_path for file in files if file.old_path and not file.new_path and is_candidate(file.path)]
         added = [file.new_path for file in files if file.new_path and not file.old_path and is_candidate(file.path)]
@@ -78,7 +90,8 @@ def _rank_pairs(
     for old_path, old_group, old_contents in removed:
         for new_path, new_group, new_contents in added:
             old_name, new_name = (PurePosixPath(path).name.partition(".")[0] for path in (old_path, new_path))
-            similarity = SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
+            words = (_SEPARATOR.sub("", name).casefold() for name in (old_name, new_name))
+            similarity = SequenceMatcher(None, *words, autojunk=False).ratio()
             has_words_of_other = _have_common_words(old_name, new_name)
             is_close = old_group == new_group and (similarity >= _MIN_NAME_SIMILARITY or has_words_of_other)
             if is_close and are_alike(old_contents, new_contents):
@@ -97,6 +110,31 @@ def _is_world(path: str) -> bool:
 
 def _read_models(version: Version, path: str) -> _Contents:
     return Counter(read_world_models(version, path))
+
+
+def _is_header(path: str) -> bool:
+    return path.endswith(HEADER_SUFFIXES)
+
+
+def _is_cpp_source(path: str) -> bool:
+    return path.endswith(CPP_SUFFIXES) and not _is_header(path)
+
+
+def _is_python_source(path: str) -> bool:
+    return path.endswith(PYTHON_SUFFIX)
+
+
+def _read_classes(version: Version, path: str) -> _Contents:
+    """Return the classes that a source defines, or whose functions it defines."""
+    text = version.text(path)
+    if path.endswith(PYTHON_SUFFIX):
+        return Counter(_PYTHON_CLASS.findall(text))
+    text = blank_comments(text)
+    return Counter([*_CPP_CLASS.findall(text), *_CPP_METHOD.findall(text)])
+
+
+def _have_common_keys(old: _Contents, new: _Contents) -> bool:
+    return not old.keys().isdisjoint(new.keys())
 
 
 def _is_parameter_file(path: str) -> bool:

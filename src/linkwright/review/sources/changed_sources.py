@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from types import MappingProxyType
 
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
+from linkwright.review.sources.cpp.base_classes import find_base_sources
 from linkwright.review.sources.cpp_bases import ClassMethods
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
@@ -56,6 +57,12 @@ class ChangedSources:
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    def get_inherited(self, path: str | None) -> list[SourceNames]:
+        """Return the names in the sources of the base classes of a C++ source."""
+        if path is None or not path.endswith(CPP_SUFFIXES):
+            return []
+        return [read_source_names(base) for base in find_base_sources(self.version.file(path))]
 
     @property
     def paths(self) -> Collection[str]:
@@ -181,24 +188,19 @@ class ChangedSources:
             if (other.kind, other.type) == (item.kind, item.type)
         }
 
-    def lacks_in_changed(self, item: SourceName, path: str) -> bool:
-        """Return whether no other changed source has a name.
+    def count_owners(self, item: SourceName, path: str) -> int:
+        """Return the number of other changed sources that have a name.
 
-        If one has it, the name has moved. A parameter of dynamic_reconfigure only moves to another description.
+        A parameter of dynamic_reconfigure only counts in other descriptions.
         """
-        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
-            return False
         is_description = path.endswith(DYNAMIC_SUFFIX)
         others = (
             names
             for other, names in self._names.items()
             if other != path and (other.endswith(DYNAMIC_SUFFIX) or not is_description)
         )
-        return not any(
-            (known.kind, get_comparison_name(known)) == (item.kind, get_comparison_name(item))
-            for names in others
-            for known in names.names
-        )
+        key = get_comparison_name(item)
+        return sum(any(get_comparison_name(known) == key for known in names.of_kind(item.kind)) for names in others)
 
     def lacks(self, item: SourceName, path: str) -> bool:
         """Return whether a name is in no changed source and in no source of the package.
@@ -220,7 +222,7 @@ class ChangedSources:
         package = self.find_package(path)
         if package is None:
             return True
-        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
+        if item.kind is NameKind.PARAMETER and self.generates(item.name, path):
             return False
         others = self._get_unchanged(package)
         is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
@@ -366,7 +368,7 @@ class ChangedSources:
             self._unchanged_by_package[package] = UnchangedSources(self.version, package, self._names)
         return self._unchanged_by_package[package]
 
-    def _generates(self, name: str, path: str) -> bool:
+    def generates(self, name: str, path: str) -> bool:
         """Return whether code is generated for a parameter.
 
         The generator reads a description beside the source.

@@ -30,6 +30,7 @@ from linkwright.review.sources.details import (
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given, take_given
 from linkwright.review.sources.hardware_interfaces import find_description_without
+from linkwright.review.sources.inherited_names import drop_inherited, list_new_expressions
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
@@ -171,12 +172,15 @@ class _SourcePair(PairedNames):
         path, old_path = self.file.path, self.file.old_path or self.file.path
         only_old = {name: item for name, item in before.items() if name not in after}
         only_new = {name: item for name, item in after.items() if name not in before}
+        if kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
+            only_old = drop_inherited(only_old, self.new.get_inherited(self.file.new_path) if only_old else ())
+            only_new = drop_inherited(only_new, self.old.get_inherited(self.file.old_path) if only_new else ())
         left = [item for item in only_old.values() if self._is_left_to_others(item)]
         removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
         is_new_node = self.file.old_path is None and (new_names.makes_node or path.endswith(DYNAMIC_SUFFIX))
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
-            lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
+            lacks = self._did_not_lose  # report everything that a new node uses, even if another node uses it
         is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1
         if is_sole_node and only_new and self.old.lacks(next(iter(only_new.values())), old_path):
             removed = list(only_old.values())  # even if another node of the package has the old name
@@ -213,6 +217,12 @@ class _SourcePair(PairedNames):
         yield from self._report_given_frame(removed, old_names, new_names)
         removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
+
+    def _did_not_lose(self, item: SourceName, path: str) -> bool:
+        """Return whether no changed source lost a name of a new node, so that it did not move to the node."""
+        if item.kind is NameKind.PARAMETER and self.old.generates(item.name, path):
+            return False
+        return self.old.count_owners(item, path) <= self.new.count_owners(item, path)
 
     def _rename_type(self, item: SourceName, new: SourceName) -> SourceName:
         """Return an old name with the new name of the package of its type, unless the new source has the old one."""
@@ -409,13 +419,16 @@ class _SourcePair(PairedNames):
         added_expressions = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
         yield from self._compare_expression_types(*sides)
         yield from self._compare_prefixed(kind, removed, added_expressions)
+        inherited = self.new.get_inherited(self.file.new_path) if removed_expressions else []
+        candidates = [*added_expressions, *list_new_expressions(kind, inherited, sides[0])]
         for item in list(removed_expressions):  # a different expression for the same name
-            matching = [expression for expression in added_expressions if expression.type == item.type]
+            matching = [expression for expression in candidates if expression.type == item.type]
             if matching:
                 other = max(matching, key=lambda expression: compute_similarity(item, expression))
                 removed_expressions.remove(item)
-                added_expressions.remove(other)
-                yield from self._compare_patterns(item, other)
+                candidates.remove(other)
+                added_expressions = [expression for expression in added_expressions if expression is not other]
+                yield from self._compare_patterns(item, other, [new_names, *inherited])
         for item, other in take_pairs(removed, added_expressions):
             text = format_computed(item, other.name, new_names.choices.get(other.name, ()))
             default = new_names.find_default(other)
@@ -533,10 +546,13 @@ class _SourcePair(PairedNames):
                 for text, reason, _ in compare_computed(self._rename_type(matching[0][0], item), item, defaults):
                     yield self.make_change(text, item.span, self.new, reason)
 
-    def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
-        """Yield the change of the texts in an expression for a name, or of the parameter that gives it by default."""
+    def _compare_patterns(self, old: SourceName, new: SourceName, sources: Sequence[SourceNames]) -> Iterator[Change]:
+        """Yield the change of the texts in an expression for a name, or of the parameter that gives it by default.
+
+        The new name is in one of the sources.
+        """
         old_default = self.old.get_names(self.file.old_path).find_default(old)
-        new_default = self.new.get_names(self.file.new_path).find_default(new)
+        new_default = next(filter(None, (names.find_default(new) for names in sources)), None)
         if old_default is not None and new_default is not None:
             yield from self._compare_defaults(old, new, old_default, new_default)
             return
@@ -557,7 +573,11 @@ class _SourcePair(PairedNames):
         self, old: SourceName, new: SourceName, old_default: DefaultName, new_default: DefaultName
     ) -> Iterator[Change]:
         """Yield the name that another parameter gives now. Another default of the same parameter has its own line."""
-        if old_default.parameter == new_default.parameter or old_default.name == new_default.name:
+        patterns = (
+            old_default.pattern or f"<{old_default.parameter}>",
+            new_default.pattern or f"<{new_default.parameter}>",
+        )
+        if patterns[0] == patterns[1] or old_default.name == new_default.name:
             return
         package = self.new.find_package(self.file.path)
         joined = new_default.parameter.split(SUM)  # a value that a file sets is only a part of the name now
@@ -568,7 +588,9 @@ class _SourcePair(PairedNames):
         names = self.old.get_names(self.file.old_path)
         reason = None if is_set else self._find_default_reason(old, old_default.name, new_default.name, names)
         reason = None if reason is None else phrase("by default, {reason}", reason=reason)
-        text = format_rename(replace(old, name=old_default.name), replace(new, name=new_default.name))
+        has_sum = bool(old_default.pattern and new_default.pattern)
+        shown = patterns if has_sum else (old_default.name, new_default.name)
+        text = format_rename(replace(old, name=shown[0]), replace(new, name=shown[1]))
         yield self.make_change(text, new.span, self.new, reason)
 
 

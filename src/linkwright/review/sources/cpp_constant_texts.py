@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from linkwright.review.sources.cpp.values import (
     find_assigned_expression,
     find_assigned_text,
     find_constants,
+    find_member_expression,
 )
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.message_constants import read_message_constants
@@ -24,6 +25,8 @@ from linkwright.review.sources.shared_constants import read_header_constants
 
 _MESSAGE_CONSTANT = re.compile(r"\s*(?P<type>(?:::)?(?:\w+::)*[A-Z]\w*)::(?P<name>[A-Z][A-Z0-9_]*)\s*")
 """A constant of a message, such as ``arm_msgs::msg::Topics::STATE``."""
+_MAX_DEPTH = 5
+_BETWEEN_TEXTS = re.compile(r'(?<=[^\\"])"\s*\+\s*"')
 _PART = re.compile(r'"[^"\\]*"|[A-Za-z_]\w*')
 _NODE_NAME = r"(?:ros\s*::\s*)?this_node\s*::\s*getName\s*\(\s*\)"
 _PRIVATE = re.compile(rf'[\s(]*(?:{_NODE_NAME}|(?P<variable>\w+))\s*\+\s*"/(?P<name>[^"\\]+)"[\s)]*')
@@ -38,13 +41,22 @@ class ConstantTexts:
         text: its text without comments.
         headers: the texts of the included headers of the repository.
         initial_values: the initial values of members and variables.
+        read_bases: returns the texts of the headers and sources of base classes.
     """
 
-    def __init__(self, path: Path, text: str, headers: Sequence[str], initial_values: InitialValues) -> None:
+    def __init__(
+        self,
+        path: Path,
+        text: str,
+        headers: Sequence[str],
+        initial_values: InitialValues,
+        read_bases: Callable[[], Sequence[str]],
+    ) -> None:
         self._path = path
         self._text = text
         self._headers = headers
         self._initial_values = initial_values
+        self._read_bases = read_bases
         self.own = find_constants(text)
         """The texts of the constants of the source, by name."""
 
@@ -71,11 +83,30 @@ class ConstantTexts:
             return self._functions.evaluate(expression)
         return self._find(variable["name"], begin)
 
-    def find_sum(self, expression: str, position: int) -> str:
-        """Return the sum of texts that a variable has at an offset, or the expression itself if it is none."""
-        variable = VARIABLE.fullmatch(expression)
-        assigned = None if variable is None else find_assigned_expression(self._text, variable["name"], position)
-        return assigned if assigned is not None and is_sum_of_texts(assigned) else expression
+    def expand(self, expression: str, position: int, depth: int = 0) -> str:
+        """Return an expression with the sums of texts in place of the variables that have them.
+
+        Functions that only return a member are replaced by it. Neighboring texts are joined.
+
+        Args:
+            expression: the expression.
+            position: its offset.
+            depth: the number of sums around it.
+        """
+        parts = [self._expand_part(part, position, depth) for part in split_sum(expression)]
+        return _BETWEEN_TEXTS.sub("", " + ".join(parts)) if depth < _MAX_DEPTH else expression
+
+    def _expand_part(self, part: str, position: int, depth: int) -> str:
+        returned = self._functions.find_returned(part)
+        if returned is not None and VARIABLE.fullmatch(returned):
+            return returned
+        variable = VARIABLE.fullmatch(part)
+        if variable is None:
+            return part
+        assigned = find_assigned_expression(self._text, variable["name"], position)
+        found = find_member_expression(self._text, variable["name"]) if assigned is None else (assigned, position)
+        expanded = part if found is None else self.expand(*found, depth + 1)
+        return expanded if is_sum_of_texts(expanded) else part
 
     def _is_node_name(self, variable: str) -> bool:
         """Return whether a variable only gets the name of the node, as ``name_ = ros::this_node::getName();`` does."""
@@ -111,7 +142,7 @@ class ConstantTexts:
 
     @cached_property
     def _functions(self) -> TextFunctions:
-        return TextFunctions([self._text, *self._headers], {**self._shared, **self.own})
+        return TextFunctions([self._text, *self._headers, *self._read_bases()], {**self._shared, **self.own})
 
     @cached_property
     def _shared(self) -> Mapping[str, str]:

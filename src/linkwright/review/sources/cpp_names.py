@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.conditions import find_cpp_conditions
+from linkwright.review.sources.cpp.base_classes import find_base_sources, read_code
 from linkwright.review.sources.cpp.callbacks import find_message_type, find_service_type
 from linkwright.review.sources.cpp.callers import CallerNames
 from linkwright.review.sources.cpp.calls import (
@@ -20,19 +21,9 @@ from linkwright.review.sources.cpp.calls import (
     find_calls,
 )
 from linkwright.review.sources.cpp.declared_groups import find_declared_groups
-from linkwright.review.sources.cpp.functions import (
-    HIDDEN,
-    PRIVATE,
-    PROTECTED,
-    DeclaredFunction,
-    read_base_names,
-    read_declared_functions,
-    read_declared_members,
-    read_scopes,
-)
 from linkwright.review.sources.cpp.helper_nodes import is_helper_node
 from linkwright.review.sources.cpp.lifecycle import LifecycleCallbacks
-from linkwright.review.sources.cpp.members import find_constructions, read_included_headers
+from linkwright.review.sources.cpp.members import Construction, find_constructions, read_included_headers
 from linkwright.review.sources.cpp.node_handles import Handles, add_namespace
 from linkwright.review.sources.cpp.node_options import Remappings, read_remappings
 from linkwright.review.sources.cpp.options import find_options
@@ -56,13 +47,13 @@ from linkwright.review.sources.cpp.values import (
 from linkwright.review.sources.cpp.variable_types import VariableTypes
 from linkwright.review.sources.cpp.yaml_keys import find_yaml_keys
 from linkwright.review.sources.cpp_constant_texts import ConstantTexts
+from linkwright.review.sources.cpp_declarations import read_declarations
 from linkwright.review.sources.details import read_service_qos
-from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.gazebo_topics import find_gazebo_topics
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import extract_pattern, find_format
-from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import (
     find_helper_calls,
@@ -97,16 +88,6 @@ _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]
 _RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
 _POINTER = re.compile(r"&\s*(?:\w+::)*?((?:\w+::)\w+)(?!::|\w)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
-_NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
-_ALIAS = re.compile(
-    r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
-)
-_CLASS = re.compile(
-    r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
-    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
-    re.MULTILINE,
-)
-_FORWARD_CLASS = re.compile(r"^[ \t]*(?:class|struct)\s+(\w+)\s*;", re.MULTILINE)
 _QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
 
 
@@ -184,91 +165,9 @@ class _Reader:
             bases = sorted({other.base for other in registrations if other[:2] == item[:2] and other.base})
             details = ((Detail.BASES, ", ".join(bases)),) if bases else ()
             self._add(item.kind, item.name, item.start, item.end, details=details)
-        self._read_classes()
-        self._read_functions()
+        read_declarations(self._source, text, self._names, self._add, self._make_span)
         self._names.conditional_lines += find_cpp_conditions(text)
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
-
-    def _read_classes(self) -> None:
-        """Add the classes and enumerations.
-
-        Other packages cannot use those that a class hides.
-        """
-        scopes = {end: classes for classes, end in read_scopes(self._text, HIDDEN)}
-        protected = {end for _, end in read_scopes(self._text, PROTECTED)}
-        for match in _CLASS.finditer(self._text):
-            end = match.end() - 1
-            if end not in scopes:
-                self._names.bases.setdefault(match["name"], []).extend(read_base_names(match["bases"] or ""))
-                self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
-                continue
-            self._names.hidden_classes.add(match["name"])
-            if end in protected:
-                span = self._make_span(match.start("name"), match.end("name"))
-                name = "::".join([*scopes[end], match["name"]])
-                self._names.protected.append(SourceName(NameKind.CLASS, name, "", span))
-
-    def _read_functions(self) -> None:
-        """Add the functions and members of a header.
-
-        The type of a function is the list of parameters of each overload.
-        """
-        if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
-            return
-        for match in _ALIAS.finditer(self._text):
-            type_name = re.sub(r"\s*([*&<>,:()])\s*", r"\1", " ".join((match["type"] or match["used"]).split()))
-            self._names.aliases[match["name"] or match["using"]] = type_name
-        for match in _FORWARD_CLASS.finditer(self._text):
-            if self._text.count("{", 0, match.start()) == self._text.count("}", 0, match.start()):
-                self._names.forward_classes.add(match[1])
-        for match in _NAMESPACE.finditer(self._text):
-            self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
-        for enumeration, enumerators in read_enumerations(self._text).items():
-            self._names.enumerations[enumeration] = {
-                name: (item.value, self._make_span(item.start, item.start + len(name)))
-                for name, item in enumerators.items()
-            }
-        overloads: dict[str, list[DeclaredFunction]] = {}
-        for function in read_declared_functions(self._text):
-            if function.is_override:
-                self._names.overrides.add(function.name)
-            else:
-                overloads.setdefault(function.name, []).append(function)
-        for name, functions in overloads.items():
-            if not any(function.is_defined or function.is_pure for function in functions):
-                self._names.declared_only.add(name)
-            self._names.parameter_names |= {
-                (name, _join_overloads([function]).replace(" = ...", "")): function.parameter_names
-                for function in functions
-            }
-            types = _join_overloads(functions)
-            details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
-            if len(functions) == 1 and functions[0].result:
-                details = (*details, (Detail.RESULT, functions[0].result))
-            if any(function.is_const for function in functions):
-                details = (*details, (Detail.CONSTANT, YES))
-            start = self._text.find(name.rpartition("::")[2], functions[0].start)
-            self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
-        for member in read_declared_members(self._text):
-            end = member.start + len(member.name.rpartition("::")[2])
-            self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
-        non_public = (read_declared_functions(self._text, HIDDEN), read_declared_members(self._text, HIDDEN))
-        self._names.non_public = frozenset(item.name for items in non_public for item in items)
-        protected: dict[str, list[DeclaredFunction]] = {}
-        private = [function for function in read_declared_functions(self._text, PRIVATE) if function.is_pure]
-        for function in (*read_declared_functions(self._text, PROTECTED), *private):
-            if not function.is_override:
-                protected.setdefault(function.name, []).append(function)
-        for name, functions in protected.items():
-            short = name.rpartition("::")[2]
-            start = max(functions[0].start, self._text.find(short, functions[0].start))
-            span = self._make_span(start, start + len(short))
-            details = ((Detail.REQUIRED, YES),) if functions[0] in private else ()
-            types = _join_overloads(functions)
-            self._names.protected.append(SourceName(NameKind.FUNCTION, name, types, span, details))
-        for member in read_declared_members(self._text, PROTECTED):
-            span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
-            self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))
 
     def _read_call(self, call: Call) -> None:
         text, kind = self._text, call.kind
@@ -309,6 +208,7 @@ class _Reader:
         """
         kind, type_name = call.kind, call.type
         name = " ".join(self._text[slice(*offsets)].split())
+        name = self._texts.expand(name, offsets[0])
         is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         details: tuple[tuple[Detail, str], ...] = ()
         is_param = call.function == "param" and len(call.arguments) == _PARAM_ARGUMENTS
@@ -319,7 +219,6 @@ class _Reader:
             type_name = type_name or self._find_callback_type(kind, texts)
             details = tuple(self._find_qos(call, texts))
         if is_ros:
-            name = name if name in self._names.defaults else self._texts.find_sum(name, offsets[0])
             self._names.expressions.append(self._make_name(kind, name, type_name, *offsets, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
@@ -327,7 +226,9 @@ class _Reader:
         is_parameter = kind is NameKind.PARAMETER
         parameter = None
         if not is_parameter:
-            parameter = find_cpp_parameter_default(self._text, expression, self._find_known_default)
+            parameter = find_cpp_parameter_default(
+                [self._text, *self._base_texts], expression, self._find_known_default
+            )
         if parameter is not None:
             self._names.add_default(kind, expression, *parameter)
         return parameter is not None
@@ -459,6 +360,11 @@ class _Reader:
         return [blank_comments(text) for text in read_included_headers(Path(self._source.name))]
 
     @cached_property
+    def _base_texts(self) -> Sequence[str]:
+        """The headers and sources of the base classes of the repository, without comments."""
+        return [read_code(path) for path in find_base_sources(Path(self._source.name))]
+
+    @cached_property
     def _node_bases(self) -> Collection[str]:
         """The classes of included headers that derive from a node, to which derived classes give its name."""
         return {match["name"] for text in self._headers for match in _NODE_CLASS.finditer(text)}
@@ -484,9 +390,20 @@ class _Reader:
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
         for member in find_constructions(self._text, self._headers):
-            for begin, end in list(find_arguments(self._text, member.start))[:3]:
+            arguments = list(find_arguments(self._text, member.start))[:3]
+            for begin, end in arguments:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
+            else:
+                self._add_given_member(member, arguments)
+
+    def _add_given_member(self, member: Construction, arguments: Sequence[tuple[int, int]]) -> None:
+        """Add the expression with which a member is constructed, if a parameter gives a name to it."""
+        for begin, end in arguments:
+            expression = " ".join(self._text[begin:end].split())
+            if self._add_default(member.kind, expression):
+                self._names.expressions.append(self._make_name(member.kind, expression, member.type, begin, end))
+                return
 
     def _read_helper_calls(self, element_starts: Collection[int]) -> None:
         """Add the parameters that functions of the repository read.
@@ -522,7 +439,8 @@ class _Reader:
 
     @cached_property
     def _texts(self) -> ConstantTexts:
-        return ConstantTexts(Path(self._source.name), self._text, self._headers, self._initial_values)
+        path = Path(self._source.name)
+        return ConstantTexts(path, self._text, self._headers, self._initial_values, lambda: self._base_texts)
 
     @cached_property
     def _initial_values(self) -> InitialValues:
@@ -586,11 +504,6 @@ class _Reader:
         while begin < end and self._text[begin].isspace():
             begin += 1
         return self._source.span(begin, max(end, begin + 1))
-
-
-def _join_overloads(functions: Sequence[DeclaredFunction]) -> str:
-    """Return the parameters of each overload of a function."""
-    return "; ".join(sorted({", ".join(function.parameters) for function in functions}))
 
 
 def _find_pointers(texts: Sequence[str]) -> set[str]:

@@ -34,7 +34,7 @@ def extract_pattern(expression: str) -> str | None:
 
 def is_sum_of_texts(expression: str) -> bool:
     """Return whether an expression joins texts with others, without calls that give other texts."""
-    is_sum = "+" in _TEXT.sub("", expression) and extract_pattern(expression) is not None
+    is_sum = "+" in _TEXT.sub("", expression) and _TEXT.search(expression) is not None
     return is_sum and set(_CALLED.findall(expression)) <= _JOINING_CALLS
 
 

@@ -162,11 +162,13 @@ class DefaultName:
         parameter: the name of the parameter.
         kind: the kind of the name.
         name: the default.
+        pattern: the texts and parameters of a sum, such as ``<prefix>/state``; empty for a single parameter.
     """
 
     parameter: str
     kind: NameKind
     name: str
+    pattern: str = ""
 
 
 class ConditionalLines(NamedTuple):
@@ -347,10 +349,10 @@ class SourceNames:
         parts = function.split(separator)
         return self.callbacks.get(function) or self.callbacks.get(separator.join(parts[-2:]))
 
-    def add_default(self, kind: NameKind, expression: str, parameter: str, default: str) -> None:
+    def add_default(self, kind: NameKind, expression: str, parameter: str, default: str, pattern: str) -> None:
         """Add the name that an expression has by default, because it reads a parameter."""
         self.defaults[expression] = default
-        self.default_names.add(DefaultName(parameter, kind, default))
+        self.default_names.add(DefaultName(parameter, kind, default, pattern))
 
     def find_default(self, item: SourceName) -> DefaultName | None:
         """Return the name that an expression has by default and its parameter, or None if it is unknown."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
@@ -36,14 +36,17 @@ class ParameterDefault(NamedTuple):
     Attributes:
         parameter: the name of the parameter, or the names of those whose values are joined, such as ``prefix + topic``.
         default: the name by default.
+        pattern: the texts of a sum with the names of the parameters between them, such as ``<prefix>/state``; empty for
+            a single parameter.
     """
 
     parameter: str
     default: str
+    pattern: str = ""
 
 
 def find_cpp_parameter_default(
-    text: str, expression: str, find_known: Callable[[str], str | None]
+    texts: Sequence[str], expression: str, find_known: Callable[[str], str | None]
 ) -> ParameterDefault | None:
     """Return the parameter that an expression of a C++ source reads, such as ``topic_``; None for others.
 
@@ -51,7 +54,7 @@ def find_cpp_parameter_default(
     variable keeps it, and nothing asks whether it is empty.
 
     Args:
-        text: the source without comments.
+        texts: the source without comments, and those of its base classes. The first text that reads a variable counts.
         expression: the text of the expression.
         find_known: returns the default of a parameter whose calls give no literal; None if it is unknown.
     """
@@ -61,19 +64,20 @@ def find_cpp_parameter_default(
         return _join(
             ParameterDefault("", literal["text"])
             if literal is not None
-            else find_cpp_parameter_default(text, part, find_known)
+            else find_cpp_parameter_default(texts, part, find_known)
             for part, literal in zip(parts, literals, strict=True)
         )
     call = _CPP_READ.search(expression)
     variable = _CPP_VARIABLE.fullmatch(expression)
-    reads = [call] if call is not None else []
+    reads, text = [call] if call is not None else [], texts[0]
     if variable is not None:
         name = re.escape(variable["name"])
         assigned = re.compile(rf"\b{name}\s*(?:=|\()\s*(?:this\s*->\s*|\w+\s*(?:->|\.)\s*)?(?={_CPP_READ.pattern})")
         passed = re.compile(
             rf"\b(?:get_parameter|get_parameter_or|param)\s*{_TEMPLATE}\(\s*{_NAME}\s*,\s*{name}\s*(?:,\s*{_TEXT})?"
         )
-        reads = [match for pattern in (assigned, passed) for match in pattern.finditer(text)]
+        found_reads = ([match for pattern in (assigned, passed) for match in pattern.finditer(item)] for item in texts)
+        text, reads = next(((item, found) for item, found in zip(texts, found_reads, strict=True) if found), (text, []))
     defaults = {(match["name"], match["default"] or _find_declared_default(text, match["name"])) for match in reads}
     if len(defaults) != 1:
         return None
@@ -113,7 +117,8 @@ def _join(parts: Iterable[ParameterDefault | None]) -> ParameterDefault | None:
     names = [item.parameter for item in known if item.parameter]
     if len(known) < len(found) or not names:
         return None
-    return ParameterDefault(SUM.join(names), "".join(item.default for item in known))
+    pattern = "".join(f"<{item.parameter}>" if item.parameter else item.default for item in known)
+    return ParameterDefault(SUM.join(names), "".join(item.default for item in known), pattern)
 
 
 def _find_declared_default(text: str, parameter: str) -> str:

@@ -548,12 +548,24 @@ class _Reader:
         details: tuple[tuple[Detail, str], ...] = (),
         prefix: str = "",
     ) -> None:
+        for _ in self._python.iterate(node):
+            self._add_one(kind, node, type_node, details, prefix)
+
+    def _add_one(
+        self,
+        kind: NameKind,
+        node: ast.expr | None,
+        type_node: ast.expr | None,
+        details: tuple[tuple[Detail, str], ...],
+        prefix: str,
+    ) -> None:
         text, full_type = self._read_name(node), ""
         if kind is NameKind.PARAMETER:
             value = None if type_node is None else self._python.resolved(type_node)
             is_literal = isinstance(value, (ast.Constant, ast.List, ast.UnaryOp))
             type_name = ast.unparse(value) if is_literal and value is not None else ""
         else:
+            type_node = None if type_node is None else self._python.find_in_loop(type_node)
             type_name = "" if type_node is None else _format_type(type_node)
             full_type = "" if type_node is None else self._types.find(type_node)
         if node is not None and text is None:

@@ -63,7 +63,21 @@ _NODE = re.compile(
     r"\s*(?:\.get\s*\(\s*\))?"
 )
 """An argument that is a node or its handle, before the name."""
+_ONLY_NODE = re.compile(r"[&*]?\s*\w*(?:nh|[nN]ode|[hH]andle)_?")
+"""An argument without a scope before its function that is a node, and no name with such a word in it."""
 _OPENING = re.compile(r"\s*\(")
+_OPENING_OF_MADE = re.compile(r"\s*>?\s*\(")
+_MADE = r"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+)(?:\w+\s*::\s*)*"
+_CLASS = r"(?P<class>\w*(?:Publisher|Subscri(?:ber|ption)))\s*(?=<)"
+_CONSTRUCTION = re.compile(_MADE + _CLASS)
+_ALIAS = re.compile(rf"\busing\s+(?P<name>\w+)\s*=\s*(?:\w+\s*::\s*)*{_CLASS}")
+_CONSTRUCTED = {
+    True: (NameKind.PUBLISHER, ("create_publisher", "advertise")),
+    False: (NameKind.SUBSCRIPTION, ("create_subscription", "subscribe")),
+}
+"""The kind of name that a template makes, with the methods of ROS 2 and ROS 1 that do the same."""
+_HANDLE = re.compile(r"n|\w*(?:nh|[hH]andle)\w*")
+"""A node handle of ROS 1."""
 _GLOBAL_SCOPES = frozenset({"ros::param::", "rclcpp::", "rclcpp_action::"})
 
 
@@ -97,6 +111,28 @@ def find_calls(text: str) -> Iterator[Call]:
         call = _read_call(text, match)
         if call is not None:
             yield call
+    yield from _find_constructions(text)
+
+
+def _find_constructions(text: str) -> Iterator[Call]:
+    """Yield the constructions of templates such as ``RealtimePublisher``, from a node, a name and a message type.
+
+    The last template argument is the type. Templates that the source defines are left out.
+    """
+    found = [(match, match["class"], match.end(), 0) for match in _CONSTRUCTION.finditer(text)]
+    for alias in _ALIAS.finditer(text):
+        made = re.compile(rf"{_MADE}{alias['name']}\b").finditer(text, alias.end())
+        found += [(match, alias["class"], alias.end(), match.end()) for match in made]
+    for match, name, opening, end in found:
+        closing = find_closing_bracket(text, opening)
+        parenthesis = _OPENING_OF_MADE.match(text, end or closing + 1)
+        arguments = [] if parenthesis is None else list(find_arguments(text, parenthesis.end() - 1))
+        node = text[slice(*arguments[0])].strip() if len(arguments) > 1 else ""
+        is_ros1 = _HANDLE.fullmatch(node) is not None
+        if (is_ros1 or _NODE.fullmatch(node)) and not re.search(rf"\b(?:class|struct)\s+{name}\b", text):
+            type_name = " ".join(text[opening + 1 : closing].rpartition(",")[2].split())
+            kind, functions = _CONSTRUCTED[name.endswith("Publisher")]
+            yield Call(kind, functions[is_ros1], "", type_name, arguments[1:], node, match.start(), is_action=False)
 
 
 def _read_call(text: str, match: re.Match[str]) -> Call | None:
@@ -124,8 +160,8 @@ def _read_call(text: str, match: re.Match[str]) -> Call | None:
         arguments = arguments[1:]
     elif scope == "rclcpp::" and function in _FREE_INDEX:
         arguments = arguments[_FREE_INDEX[function] :]
-    elif scope.endswith("::") and scope not in _GLOBAL_SCOPES and len(arguments) > 1:
+    elif (scope.endswith("::") or not scope) and scope not in _GLOBAL_SCOPES and len(arguments) > 1:
         first = text[slice(*arguments[0])].strip()
-        if _NODE.fullmatch(first):
+        if (_NODE if scope else _ONLY_NODE).fullmatch(first):
             arguments, node = arguments[1:], first
     return Call(kind, function, scope, type_name, arguments, node, match.start("name"), is_action)

@@ -86,23 +86,31 @@ def _normalize_type(text: str) -> str:
 
 
 def read_included_headers(path: Path) -> list[str]:
-    """Return the texts of the included headers: beside a source, or in an ``include`` folder of its package.
-
-    Headers of other packages near it count, but not targets of links and ``..`` outside of a package.
+    """Return the texts of the headers that `find_included_headers` finds.
 
     Args:
         path: the path of a source. The result is empty for a header.
     """
-    if path.suffix in HEADER_SUFFIXES:
-        return []
+    files = () if path.suffix in HEADER_SUFFIXES else find_included_headers(path)
+    return [blank_disabled(file.read_text("utf-8", errors="replace")) for file in files]
+
+
+def find_included_headers(path: Path) -> list[Path]:
+    """Return the headers that a source includes: beside it, or in an ``include`` folder of its package.
+
+    Headers of other packages near it count, but not targets of links and ``..`` outside of a package.
+
+    Args:
+        path: the path of a source or header.
+    """
     try:
         text = path.read_text("utf-8", errors="replace")
     except OSError:
         return []
     package = enclosing_package(path.parent)
-    base = (path.parent if package is None else package[1]).resolve()
+    base = (_find_built_folder(path) if package is None else package[1]).resolve()
     folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
-    texts = []
+    headers = []
     for match in _INCLUDE.finditer(text):
         places = [(base, folder) for folder in folders]
         if package is not None and (other := _find_neighbor(base, match["path"].partition("/")[0])) is not None:
@@ -110,8 +118,14 @@ def read_included_headers(path: Path) -> list[str]:
         files = (((folder / match["path"]).resolve(), root) for root, folder in places)
         file = next((file for file, root in files if file.is_relative_to(root) and file.is_file()), None)
         if file is not None and file.stat().st_size <= _MAX_BYTES:
-            texts.append(blank_disabled(file.read_text("utf-8", errors="replace")))
-    return texts
+            headers.append(file)
+    return headers
+
+
+def _find_built_folder(path: Path) -> Path:
+    """Return the folder that CMake builds a source in no package from, or else the folder of the source."""
+    folders = list(path.parents)[:_MAX_FOLDERS]
+    return next((folder for folder in folders if (folder / "CMakeLists.txt").is_file()), path.parent)
 
 
 def _find_neighbor(package: Path, name: str) -> Path | None:

@@ -47,6 +47,16 @@ class TextFunctions:
             return None
         return self._evaluate(resolved, 0)
 
+    def find_returned(self, call: str) -> str | None:
+        """Return the expression that a function without arguments returns, such as a member, or None if it is unknown.
+
+        Args:
+            call: the call, such as ``this->prefix()``.
+        """
+        match = _PART.fullmatch(call)
+        values = self._returned.get(match["name"], ()) if match is not None and match["call"] else ()
+        return next(iter(values)) if len(values) == 1 else None
+
     def _evaluate(self, expression: str, depth: int) -> str | None:
         if depth > _MAX_DEPTH:
             return None

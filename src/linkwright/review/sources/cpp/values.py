@@ -96,6 +96,23 @@ def find_assigned_expression(text: str, name: str, position: int) -> str | None:
     return expression if 0 < len(expression) <= _MAX_EXPRESSION_CHARACTERS else None
 
 
+def find_member_expression(text: str, name: str) -> tuple[str, int] | None:
+    """Return the only expression that a source assigns to a member, with its offset, or None.
+
+    Args:
+        text: the source without comments.
+        name: the name of the member, which begins with ``m_`` or ends with an underscore.
+    """
+    if not name.startswith("m_") and not name.endswith("_"):
+        return None
+    places = list(re.finditer(rf"(?<!\w){name}\s*\+?=(?!=)|[:,]\s*{name}\s*[({{]", text))
+    opening = places[0].end() - 1 if len(places) == 1 else 0
+    if not opening or _is_output(text, name):
+        return None
+    end = text.find(";", opening) if text[opening] == "=" else find_closing_bracket(text, opening)
+    return " ".join(text[opening + 1 : end].split()), opening
+
+
 def _find_last_assignment(text: str, name: str, position: int, form: re.Pattern[str]) -> re.Match[str] | None:
     """Return the last assignment to a variable before a place, in the same block or one around it.
 

@@ -183,14 +183,23 @@ def read_sources_of_headers(path: Path, text: str) -> list[str]:
     if path.suffix in HEADER_SUFFIXES or package is None:
         return []
     stems = re.findall(r'^[ \t]*#[ \t]*include[ \t]*["<](?:[^">\n]*/)?(\w+)\.(?:hpp|hh|hxx|h)[">]', text, re.MULTILINE)
-    suffixes = [suffix for suffix in CPP_SUFFIXES if suffix not in HEADER_SUFFIXES]
-    names = list(dict.fromkeys(f"{stem}{suffix}" for stem in stems for suffix in suffixes))
-    below = _list_files_by_name(package[1] / "src")
-    files = [*(path.parent / name for name in names), *sorted(file for name in names for file in below.get(name, ()))]
     return [
         blank_comments(file.read_text("utf-8", errors="replace"))
+        for file in find_sources_of_headers(package[1], path.parent, stems)
+        if file != path
+    ]
+
+
+def find_sources_of_headers(package: Path, folder: Path, stems: Sequence[str]) -> list[Path]:
+    """Return the sources of a package in a folder, or below the folder ``src``, that have the names of headers."""
+    suffixes = [suffix for suffix in CPP_SUFFIXES if suffix not in HEADER_SUFFIXES]
+    names = list(dict.fromkeys(f"{stem}{suffix}" for stem in stems for suffix in suffixes))
+    below = _list_files_by_name(package / "src")
+    files = [*(folder / name for name in names), *sorted(file for name in names for file in below.get(name, ()))]
+    return [
+        file
         for file in dict.fromkeys(files)
-        if file != path and file.is_file() and not file.is_symlink() and file.stat().st_size <= _MAX_BYTES
+        if file.is_file() and not file.is_symlink() and file.stat().st_size <= _MAX_BYTES
     ]
 
 

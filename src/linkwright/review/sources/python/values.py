@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import TypeGuard
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import UNKNOWN, PythonFile, Value
 from linkwright.review.sources.message_constants import read_imported_message_constants
+from linkwright.review.sources.python.loops import find_iterations
 from linkwright.review.sources.python.method_aliases import replace_method_aliases
 from linkwright.review.sources.shared_constants import read_imported_constants
 
@@ -28,6 +29,7 @@ class PythonSource(PythonFile):
     def __init__(self, source: SourceText) -> None:
         super().__init__(source)
         replace_method_aliases(self.tree)
+        self._loop_values: Mapping[str, ast.expr] = {}
 
     @cached_property
     def _attributes(self) -> dict[str, ast.expr | None]:
@@ -50,6 +52,8 @@ class PythonSource(PythonFile):
 
     def assigned_expression(self, name: str) -> ast.expr | None:
         """Return the expression assigned to a name or imported as it, or None if it is not certain."""
+        if name in self._loop_values:
+            return self._loop_values[name]
         if name in self._assignments:
             return super().assigned_expression(name)
         return self._imported_constants.get(name)
@@ -79,6 +83,23 @@ class PythonSource(PythonFile):
                 return super().value(resolved, depth + 1)
         result = self._find_result(node)
         return super().value(node, depth) if result is None else self.value(result, depth + 1)
+
+    def iterate(self, node: ast.expr | None) -> Iterator[None]:
+        """Yield for each iteration of the loops over constants that give an expression its text, with their variables.
+
+        Other expressions are in one iteration.
+        """
+        rows = find_iterations(self.tree, node, self.resolved) if node is not None and self.text(node) is None else ()
+        texts = []
+        for self._loop_values in rows:
+            texts.append(self.text(node))
+        for self._loop_values in rows if rows and None not in texts else ({},):
+            yield
+        self._loop_values = {}
+
+    def find_in_loop(self, node: ast.expr) -> ast.expr:
+        """Return the value of a variable of the loop that `iterate` runs, and any other expression unchanged."""
+        return self._loop_values.get(node.id, node) if isinstance(node, ast.Name) else node
 
     def find_texts(self, node: ast.expr, depth: int = 0) -> Sequence[str]:
         """Return all texts that an expression may have as its value; nothing if they are not certain.

@@ -287,8 +287,9 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
         return bool(words) and all(any(_has_word(line, word, "") for line in reported) for word in words)
     # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace,
     # or an option with its dashes, without its letter
-    names = [max(_OPTION_SEPARATOR.split(text), key=len) for text in (old, new)]
-    patterns = [re.compile(rf"['\"](?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?['\"]") for name in names]
+    # or other parts of a sum
+    names = [max(_OPTION_SEPARATOR.split(text), key=len).lstrip("/") for text in (old, new)]
+    patterns = [re.compile(rf"['\"](?:[\w~/<>.]*[~/>]|--?)?{re.escape(name)}(?:/[\w~/]*)?['\"]") for name in names]
     return _is_text(item.new) and all(any(pattern.search(line) for line in reported) for pattern in patterns)
 
 
