@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import subject
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = "<package format='3'><name>lamp</name><version>1.0.0</version>{}</package>\n"
 FILE = """<launch>
@@ -97,3 +97,18 @@ def test_missing_package_is_told_once(repository, compare):
     assert [item.path for item, _ in result.breaking_changes] == [path]
     assert any(str(change.sentence).startswith("lamp.ros__") for change in subject(result, values).changes)
     assert result.new_findings == []
+
+
+def test_a_repeated_node_does_not_move_to_a_file_that_newly_starts_one(repository, compare):
+    node = '<node pkg="eye" exec="eye_node" output="screen"/>'
+    files = "lamp/launch/lamp.launch.xml", "lamp/launch/eye.launch.xml"
+    both, one, none = (f"<launch>{node * count}</launch>\n" for count in (2, 1, 0))
+    repository.commit({"lamp/package.xml": MANIFEST.format("<depend>eye</depend>"), files[0]: both, files[1]: none})
+    repository.write({files[0]: one, files[1]: one})
+    result = compare(repository)
+    removed = "node 'eye/eye_node' removed: output screen; the file still has an equal one"
+    assert [sentences(subject(result, file)) for file in files] == [
+        [removed],
+        ["node 'eye/eye_node' added: output screen"],
+    ]
+    assert not breaking(result)

@@ -65,8 +65,8 @@ def test_an_argument_that_callers_had_to_pass_before_its_declaration(repository,
     repository.commit({PATH: undeclared})
     repository.write({PATH: FILE.replace(', default_value="day"', "")})
     result = compare(repository)
-    assert "argument 'bag' added" in sentences(subject(result, PATH))
-    assert ("argument 'bag' added" in breaking(result)) is is_breaking
+    assert "argument 'bag' added (required)" in sentences(subject(result, PATH))
+    assert ("argument 'bag' added (required)" in breaking(result)) is is_breaking
 
 
 def test_an_argument_with_another_inline_default_is_told(repository, compare):

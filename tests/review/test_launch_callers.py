@@ -89,7 +89,7 @@ def test_node_that_moves_into_included_file_is_moved(review_changes_with_reasons
         ('MODEL = os.environ["MODEL"]', 'MODEL = "arm"', "use of environment variable 'MODEL' removed",
          "a value that a user sets for 'MODEL' has no effect"),
         ('"rate", default_value="1"),', '"rate", default_value="1"), DeclareLaunchArgument("side"),',
-         "argument 'side' added", "callers must pass 'side'"),
+         "argument 'side' added (required)", "callers must pass 'side'"),
         ('"rate", default_value="1"),', '"rate", default_value="1"), DeclareLaunchArgument("side", default_value="l"),',
          "argument 'side' added: default l", None),
     ],

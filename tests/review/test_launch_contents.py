@@ -189,7 +189,7 @@ def test_name_that_callers_choose_is_not_a_lost_name(review_changes):
     _, found_breaking = review_changes(
         f'<arg name="name" default="cam"/>{node}', f'<arg name="robot"/><arg name="name" default="$(arg robot)"/>{node}'
     )
-    assert found_breaking == ["argument 'robot' added"]
+    assert found_breaking == ["argument 'robot' added (required)"]
 
 
 TRANSFORM = '<node pkg="tf2_ros" exec="static_transform_publisher" args="0 0 0 0 0 0 base wheel"/>'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import breaking, subject
+from tests.review.conftest import breaking, sentences, subject
 
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -148,6 +148,15 @@ def test_a_launch_file_that_lost_an_import_fails(review_changes):
     line = "from launch.substitutions import LaunchConfiguration\n"
     expected = "uses 'LaunchConfiguration', which it no longer defines or imports"
     assert review_changes("arm.launch.py", LAUNCH, line, "") == ([expected], [expected])
+
+
+def test_names_that_nothing_defines_are_told_of_an_added_launch_file(repository, compare):
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"README.md": ""})
+    repository.write({path: LAUNCH.replace('kind == "both"', "kind == sides")})
+    result = compare(repository)
+    assert sentences(subject(result, path))[1:] == ["uses 'sides', which nothing defines"]
+    assert not breaking(result)
 
 
 SPAWNER = """def spawner(name, inactive=True):

@@ -29,7 +29,7 @@ REMOVED, UNUSED = "argument 'camera' removed", "argument 'camera' is no longer u
         ((CAMERA, ""), ("", ""), f"{REMOVED}; the file did not use it", False),
         ((CAMERA, USE), (CAMERA, ""), UNUSED, True),
         (("", ""), (CAMERA, USE), "argument 'camera' added: default False", False),
-        (("", ""), ('sl.declare_arg("camera")', USE), "argument 'camera' added", True),
+        (("", ""), ('sl.declare_arg("camera")', USE), "argument 'camera' added (required)", True),
         ((CAMERA, USE), (CAMERA, ', "camera": sl.arg_map()'), None, False),
     ],
 )

@@ -19,6 +19,8 @@ _MAX_QUOTED = 6
 """The maximum number of names in a reason."""
 _CAMERA_NAME = re.compile(r"camera_?name", re.IGNORECASE)
 """The parameter of a camera of gazebo_ros that is the first part of the names of its topics."""
+_SENSOR_FRAME = re.compile(r"(?:(?:gz|ignition|optical)_)?frame_id")
+"""The tags of the frame of a sensor's messages."""
 _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
 _PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
@@ -181,7 +183,8 @@ def find_plugin_name_reason(difference: Difference) -> Phrase | None:
     if difference.old and _CAMERA_NAME.fullmatch(tag) and not is_same_name:
         return namespace_reason(difference.old)
     if difference.old and NAME_TAGS.search(tag) and not is_same_name and not _is_refused(difference):
-        return name_reason(extract_used_name(difference.old))
+        name = extract_used_name(difference.old)
+        return message_frame_reason(name) if _SENSOR_FRAME.fullmatch(tag) else name_reason(name)
     return None
 
 

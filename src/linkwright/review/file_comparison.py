@@ -18,6 +18,7 @@ from linkwright.review.files.parameters.generated import generates_code
 from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
+from linkwright.review.launches.python.undefined import find_undefined_names
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names
 from linkwright.review.texts.folders import without_folder
@@ -121,6 +122,8 @@ def _describe_unpaired_file(
         elif new_path is not None or rule.shows_removed:
             text = _add_contents(rule, text, version, path)
         changes, images = _describe_contents(version, kind, path, drawings)
+        if kind is SubjectKind.LAUNCH_FILE and new_path is not None:
+            changes += find_undefined_names(version, path)
         problems += [] if new_path is None else _find_unreadable(version, kind, path, text, changes)
     except Exception as error:  # noqa: BLE001
         problems.append(make_problem(error))

@@ -20,7 +20,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.titles import format_settings, format_title
+from linkwright.review.launches.titles import format_settings, format_title, is_required
 from linkwright.review.versions import Version
 
 _SHOWN_KINDS = (
@@ -101,7 +101,7 @@ def _format_title_with_settings(entry: Entry, unused: Collection[str], limit: in
     items = format_settings(entry, limit)
     if entry.kind == READING:
         return phrase("{entry} (required)", entry=format_title(entry))
-    if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
+    if is_required(entry):
         if items is None:
             return phrase("{entry} (required)", entry=format_title(entry))
         return phrase("{entry} ({items}, required)", entry=format_title(entry), items=items)

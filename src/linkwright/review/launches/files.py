@@ -17,7 +17,6 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason, may_be_offered
-from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.arguments.fixed import report_fixed_arguments
 from linkwright.review.launches.arguments.kinds import report_changed_kinds
 from linkwright.review.launches.arguments.repeated import report_repeated_arguments
@@ -28,6 +27,7 @@ from linkwright.review.launches.effects import explain_argument_removal, find_re
 from linkwright.review.launches.environment_readers import explain_removed_reading
 from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
+from linkwright.review.launches.harmless_removals import explain_harmless_removal
 from linkwright.review.launches.include_trees import (
     IncludeTree,
     find_moved_remapping,
@@ -74,8 +74,6 @@ from linkwright.review.launches.renames import (
 from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.simple_launch import report_declared_arguments
-from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
-from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import (
     format_added_entry,
     format_removed_entry,
@@ -83,7 +81,6 @@ from linkwright.review.launches.titles import (
     format_title,
     join_titles,
 )
-from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.texts.excerpts import differing_excerpts, shorten_middle
 
@@ -231,7 +228,10 @@ def _report_unpaired_entries(
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
-        other_file = next(find_files_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False), None)
+        moves = find_files_with_moved_action(
+            entry, pair.versions, pair.new_path, old_included.outline, is_removed=False
+        )
+        other_file = next(moves, None)
         is_included, file = file is not None, file or other_file
         differences = None if file is None else find_moved_settings(entry, pair.versions, file, is_included=is_included)
         if file is not None and differences is not None:
@@ -263,42 +263,14 @@ def _report_unpaired_entries(
             text = text if reader is None else phrase("{change}; {path} uses it", change=text, path=reader)
             pair.add(text, location, reason)
             continue
-        files = list(find_files_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True))
+        moves = find_files_with_moved_action(entry, pair.versions, pair.old_path, new_included.outline, is_removed=True)
+        files = list(moves)
         file = joined(files[:MAX_NAMES], last=" or ") if files else None
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=format_title(written), file=file)
-        publisher = find_other_publisher(entry, old_included.outline, new_included.outline, pair.versions)
-        if publisher is not None:
-            pair.add(
-                phrase("{change}; {entry} may publish its transform", change=text, entry=format_title(publisher)),
-                location,
-            )
-            continue
-        if has_robot_with_frame(entry, old_included.outline, new_included, pair.versions.new):
-            pair.add(phrase("{change}; the robot has the frame as a link", change=text), location)
-            continue
-        if is_simulated_controller_manager(entry, new_included, pair.versions.new):
-            pair.add(phrase("{change}; the simulated robot has a controller manager", change=text), location)
-            continue
-        if _is_unused_argument(pair, entry, old_included.outline):
-            pair.add(phrase("{change}; the file did not use it", change=text), location)
-            continue
-        declaration = new_included.find_declaration(entry.name) if entry.kind == "argument" else None
-        if declaration is not None:
-            path, default = declaration
-            text = phrase("{change}; {file} declares it", change=text, file=path)
-            if default is not None and default != entry.settings.get("default"):
-                text = phrase("{change} with the default '{value}'", change=text, value=default)
-            pair.add(text, location)
-            continue
-        if _is_still_read(pair, entry, new_included.outline):
-            text = phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
-            pair.add(text, location)
-            continue
-        starting_node = find_starting_node(entry, added, pair.versions.new.root)
-        if starting_node is not None:
-            titles = {"old": format_title(written), "new": format_title(starting_node)}
-            pair.add(phrase("{old} replaced by {new}, whose script names the file", **titles), location)
+        explained = explain_harmless_removal(pair, entry, (text, format_title(written)), included, added)
+        if explained is not None:
+            pair.add(explained, location)
             continue
         replacing = None if file is not None else new_included.find_replacing_node(entry, old_included)
         if replacing is not None:
@@ -375,22 +347,6 @@ def _explain_opposite_change(
     if includer is None:
         return text, reason
     return describe_opposite_change(text, reason, includer, is_removed=values[1] is None)
-
-
-def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:
-    """Return whether a removed action declares an argument of ROS 2 that the old file did not use.
-
-    Included files get a value that a caller passes with or without a declaration. ROS 1 refuses undeclared arguments.
-    """
-    is_argument = entry.kind == "argument" and "value" not in entry.settings
-    return is_argument and not old.is_ros1 and not uses_argument(pair.old_file, entry.name, old.entries)
-
-
-def _is_still_read(pair: FilePair, entry: Entry, new: LaunchOutline) -> bool:
-    """Return whether a removed action declares an argument that a Python file still reads, which callers can pass."""
-    is_argument = entry.kind == "argument" and "value" not in entry.settings
-    is_python = pair.new_file.suffix == PYTHON_SUFFIX
-    return is_argument and is_python and uses_argument(pair.new_file, entry.name, new.entries, is_declared=False)
 
 
 def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry, lost: Sequence[str]) -> None:

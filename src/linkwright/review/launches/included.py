@@ -429,16 +429,26 @@ def _find_package_file(package_folder: Path, path: str) -> Path | None:
     return files[0] if len(files) == 1 else None
 
 
-def find_files_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_removed: bool) -> Iterator[str]:
+def find_equal_action(entry: Entry, outline: LaunchOutline) -> Entry | None:
+    """Return an action of an outline that starts the same programs with the same settings, or None."""
+    if entry.kind not in STARTING_KINDS or entry.is_unknown_node:
+        return None
+    return next((other for other in outline.entries if replace(entry, span=other.span) == other), None)
+
+
+def find_files_with_moved_action(
+    entry: Entry, versions: Versions, path: str, other: LaunchOutline, *, is_removed: bool
+) -> Iterator[str]:
     """Yield the changed launch files to or from which an action moved.
 
     Args:
         entry: the action.
         versions: both versions.
         path: the path of the launch file, in the version that has the action.
+        other: the outline of the other version of the launch file, where the action did not move if an equal one is.
         is_removed: True if the new version of the file lacks the action, False if the old one does.
     """
-    if entry.kind not in ("node", "include"):
+    if entry.kind not in ("node", "include") or find_equal_action(entry, other) is not None:
         return
     key = _make_move_key(entry)
     for file in versions.changed_files[:_MAX_SEARCHED_FILES]:

@@ -183,11 +183,22 @@ def join_phrases(titles: Sequence[Phrase]) -> Phrase:
 
 
 def format_added_entry(entry: Entry) -> Phrase:
-    """Return the message that an action was added, with its only value or its settings."""
-    items = _format_value_or_settings(entry)
-    if items is None:
-        return phrase("{entry} added", entry=format_title(entry))
-    return phrase("{entry} added: {items}", entry=format_title(entry), items=items)
+    """Return the message that an action was added, with its only value or its settings.
+
+    An argument without a default is required.
+    """
+    items, title = _format_value_or_settings(entry), format_title(entry)
+    text = (
+        phrase("{entry} added", entry=title)
+        if items is None
+        else phrase("{entry} added: {items}", entry=title, items=items)
+    )
+    return phrase("{entry} (required)", entry=text) if is_required(entry) else text
+
+
+def is_required(entry: Entry) -> bool:
+    """Return whether an action declares an argument without a value or default."""
+    return entry.kind == "argument" and {"default", "value"}.isdisjoint(entry.settings)
 
 
 def format_removed_entry(entry: Entry) -> Phrase:

@@ -1,4 +1,4 @@
-"""Find sensors of Gazebo that only have another name, so that their values are compared."""
+"""Find sensors of Gazebo that only have another name, or another tag for the frame, so that values are compared."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.loading.lean_dataclasses import replace
 from linkwright.review.plugins import is_added, is_removed
 from linkwright.review.renames.replaced_plugins import PluginReplacement
 from linkwright.xmltree import Element
@@ -19,6 +20,8 @@ _SAME_TAGS = {"ray": "lidar"}
 _SAME_TYPES = {"ray": "lidar", "gpu_ray": "lidar", "gpu_lidar": "lidar"}
 """Types of sensors with the same messages."""
 _FRAME_TAG = re.compile(r"((gz|ignition)_)?frame_id|frame_?[nN]ame")
+_FRAME_PATH = re.compile(r"(?P<sensor>.*\bsensor \S+) (?:(?:(?:gz|ignition)_)?frame_id|camera optical_frame_id)")
+"""The path of the frame of a sensor's messages. The images of a camera have its optical frame, if it has one."""
 _MAX_VALUES = 12
 
 
@@ -72,6 +75,32 @@ def merge_renamed_sensors(differences: Iterable[Difference]) -> list[Difference]
         )
         result = [replacement if item is new else item for item in result if item is not old]
     return result
+
+
+def merge_sensor_frames(differences: Iterable[Difference]) -> list[Difference]:
+    """Return the differences, with a removed and an added frame of one sensor as one, if the frames differ.
+
+    Their tags may differ, because the one that counts depends on the version of Gazebo.
+    """
+    result = list(differences)
+    added = {match["sensor"]: item for item, match in _match_frames(result) if is_added(item)}
+    for old, match in _match_frames(result):
+        new = added.get(match["sensor"])
+        if not is_removed(old) or new is None:
+            continue
+        values = [item.element.text().strip() for item in (old, new) if item.element is not None]
+        if len(values) == 2 and values[0] != values[1]:
+            changed = replace(new, old=values[0], new=values[1], old_place=old.old_place, element=None)
+            result = [changed if item is new else item for item in result if item is not old]
+    return result
+
+
+def _match_frames(differences: Iterable[Difference]) -> Iterator[tuple[Difference, re.Match[str]]]:
+    """Yield the differences in frames of sensors, with the matches of their paths."""
+    for difference in differences:
+        match = _FRAME_PATH.fullmatch(f"{difference.name} {difference.property}".strip())
+        if match is not None:
+            yield difference, match
 
 
 def _group_sensors(differences: Iterable[Difference]) -> dict[tuple[str, str], list[Difference]]:

@@ -16,16 +16,12 @@ from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
 from linkwright.review.drawings.scenes import build_robot_scene
-from linkwright.review.texts.element_values import format_own_content
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.arms.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.left_names import find_left_names, is_searched_property
-from linkwright.review.texts.merged_reasons import merge_reasons
-from linkwright.review.texts.merging import merge_changes
-from linkwright.review.texts.motions import add_motion, compute_angle
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.plugins import (
@@ -37,8 +33,8 @@ from linkwright.review.plugins import (
     is_still_offered,
     names_same_topic,
 )
-from linkwright.review.renames.sensors import SensorReplacement, merge_renamed_sensors
 from linkwright.review.renames.replaced_plugins import PluginReplacement, merge_replaced_plugins
+from linkwright.review.renames.sensors import SensorReplacement, merge_renamed_sensors, merge_sensor_frames
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.argument_names import ArgumentNames, find_argument_names
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
@@ -51,6 +47,10 @@ from linkwright.review.robots.reversed_axes import find_reversal_reason
 from linkwright.review.robots.switched_parts import SwitchedParts
 from linkwright.review.robots.unused_references import UnusedReferences
 from linkwright.review.simulators import find_lost_manager_reason, find_simulator_reason
+from linkwright.review.texts.element_values import format_own_content
+from linkwright.review.texts.merged_reasons import merge_reasons
+from linkwright.review.texts.merging import merge_changes
+from linkwright.review.texts.motions import add_motion, compute_angle
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -190,7 +190,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         yield _make_root_change(old, new, frames)
     added_names = find_added_topics(comparison.differences)
     pair.added_topics |= find_offered_topics(comparison.differences)
-    differences = merge_renamed_sensors(merge_replaced_plugins(comparison.differences))
+    differences = merge_sensor_frames(merge_renamed_sensors(merge_replaced_plugins(comparison.differences)))
     added_links = AddedLinks(differences, new)
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins

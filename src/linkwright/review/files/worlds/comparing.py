@@ -43,8 +43,10 @@ from linkwright.review.plugins import (
     format_contents,
     is_added,
     is_removed,
+    is_still_offered,
 )
 from linkwright.review.renames.replaced_plugins import PluginReplacement, merge_replaced_plugins
+from linkwright.review.renames.sensors import merge_sensor_frames
 from linkwright.review.texts.element_values import format_own_content
 from linkwright.review.texts.excerpts import differing_excerpts
 from linkwright.review.texts.motions import add_pose_motion
@@ -103,7 +105,7 @@ def compare_worlds(pair: FilePair, find_spawned_models: Callable[[Versions, str]
     joined_differences = list(join_inertials(drop_rounding(changed)))
     topics = find_added_topics(joined_differences)
     pair.added_topics |= find_offered_topics(joined_differences)
-    differences = _drop_states_of_lost_models(merge_replaced_plugins(joined_differences))
+    differences = _drop_states_of_lost_models(merge_sensor_frames(merge_replaced_plugins(joined_differences)))
     changes = [
         _WorldChange(difference, _find_breaking_reason(difference, topics, elements[1])) for difference in differences
     ]
@@ -368,7 +370,9 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str], element
     limit = _JOINT_LIMIT.search(path)
     if limit is not None and difference.old and difference.new:
         return find_written_reason(limit["name"], limit["side"], difference.old, difference.new)
-    is_used = "plugin " in difference.property or "sensor" in difference.property
+    is_used = ("plugin " in difference.property or "sensor" in difference.property) and not is_still_offered(
+        difference, added
+    )
     reason = find_plugin_name_reason(difference) if is_used else None
     return reason or find_default_topic_reason(difference, elements)
 

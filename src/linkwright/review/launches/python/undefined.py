@@ -11,10 +11,12 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.changes import Change, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.python.undefined_names import find_bound_names
 from linkwright.review.sources.reading import read_source_names, try_read_source
+from linkwright.review.versions import Version
 
 _LITERALS = (ast.Tuple, ast.List, ast.Dict, ast.Set, ast.Constant, ast.JoinedStr, ast.ListComp, ast.DictComp)
 """The expressions that cannot be called."""
@@ -44,6 +46,20 @@ def report_undefined_names(pair: FilePair) -> None:
         if name not in known and callable(getattr(builtins, name, None)):
             text = phrase("the built-in function '{name}' is in a list of actions", name=name)
             pair.add(text, pair.location(span), phrase("the launch file fails"))
+
+
+def find_undefined_names(version: Version, path: str) -> list[Change]:
+    """Return a line for each name that an added launch file uses although nothing defines it."""
+    if not path.endswith(PYTHON_SUFFIX):
+        return []
+    uses = read_source_names(version.file(path)).undefined_names
+    return [
+        Change(
+            phrase("uses '{name}', which nothing defines", name=name),
+            location=Location(path, span.line, span.column),
+        )
+        for name, span in uses.items()
+    ]
 
 
 def _find_unbound_actions(source: SourceText | None) -> Iterator[tuple[str, Span]]:
