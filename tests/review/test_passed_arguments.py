@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import breaking
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = "<package><name>lamp</name><version>1.0.0</version></package>\n"
 ROS1 = '<launch><arg name="run" default="false"/><arg name="x" default="1"/><node pkg="a" type="b"/></launch>\n'
@@ -153,3 +153,63 @@ def test_argument_that_a_file_of_another_value_does_not_declare_makes_the_includ
     lines = [(str(change.sentence), str(change.reason)) for change in changes]
     line = ("passes 'grip' to files that do not declare it", "the include fails with robot:=leg")
     assert (line in lines) is is_found
+
+
+CHAIN = """<launch>
+  <arg name="speed" default="2"/>
+  <include file="$(find-pkg-share lamp)/launch/{file}">{argument}</include>
+{rest}</launch>
+"""
+SPEED = '<arg name="speed" value="$(var speed)"/>'
+PYTHON_NODE = """from launch import LaunchDescription
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([Node(package="a", executable="b")])
+"""
+
+
+@pytest.mark.parametrize(
+    ("included", "argument", "rest", "is_found"),
+    [
+        (ROS2, SPEED, "", True),
+        (ROS2, SPEED, '  <node pkg="a" exec="c" name="$(var speed)"/>\n', True),
+        (ROS2, SPEED.replace("$(var speed)", "3").replace("speed", "pace"), "", True),
+        (ROS2, SPEED.replace("$(var speed)", "3"), '  <node pkg="a" exec="c" name="$(var speed)"/>\n', False),
+        (ROS2.replace("exec=", 'name="$(var speed)" exec='), SPEED, "", False),
+        (ROS2.replace("</launch>", '<include file="$(find-pkg-share x)/y.launch.xml"/></launch>'), SPEED, "", False),
+        (ROS2.replace('<arg name="run" default="false"/>', '<arg name="speed"/>'), SPEED, "", False),
+    ],
+)
+def test_an_argument_that_an_included_file_of_ros_2_does_not_use_is_told(
+    repository, compare, included, argument, rest, is_found
+):
+    caller = CHAIN.format(file="a.launch.xml", argument="", rest=rest)
+    files = {"lamp/package.xml": MANIFEST, "lamp/launch/a.launch.xml": included, "lamp/launch/b.launch.xml": caller}
+    repository.commit(files)
+    new = CHAIN.format(file="a.launch.xml", argument=argument, rest=rest)
+    repository.write({"lamp/launch/b.launch.xml": new})
+    result = compare(repository)
+    name = "pace" if "pace" in argument else "speed"
+    line = f"passes '{name}' to 'lamp/launch/a.launch.xml', which does not use this argument"
+    assert (line in sentences(subject(result, "lamp/launch/b.launch.xml"))) is is_found
+    assert line not in breaking(result)
+
+
+@pytest.mark.parametrize(
+    ("included", "is_found"),
+    [
+        (PYTHON_NODE, True),
+        (PYTHON_NODE.replace('"b"', "LaunchConfiguration(f\"s{'peed'}\")"), False),
+        (PYTHON_NODE.replace("from launch import", "from lamp.helpers import nodes\nfrom launch import"), False),
+    ],
+)
+def test_arguments_that_python_may_compute_count_as_used(repository, compare, included, is_found):
+    caller = CHAIN.format(file="a.launch.py", argument="", rest="")
+    files = {"lamp/package.xml": MANIFEST, "lamp/launch/a.launch.py": included, "lamp/launch/b.launch.xml": caller}
+    repository.commit(files)
+    arguments = SPEED + '<arg name="pace" value="3"/>'
+    repository.write({"lamp/launch/b.launch.xml": CHAIN.format(file="a.launch.py", argument=arguments, rest="")})
+    line = "passes 'pace', 'speed' to 'lamp/launch/a.launch.py', which uses none of these arguments"
+    found = [text for text in sentences(subject(compare(repository), "lamp/launch/b.launch.xml")) if line in text]
+    assert bool(found) is is_found

@@ -40,6 +40,7 @@ from linkwright.review.files.interfaces import compare_interfaces, interface_con
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
 from linkwright.review.files.parameters.comparing import parameter_contents
+from linkwright.review.files.parameters.configurations import YAML_SUFFIXES
 from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
 from linkwright.review.files.worlds.comparing import compare_worlds, is_model, world_contents
 from linkwright.review.files.worlds.model_configurations import MODEL_CONFIGURATION, compare_model_configurations
@@ -53,8 +54,6 @@ from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.robots.unpaired_robots import description_contents
 from linkwright.review.versions import TEST_FOLDERS, Version
-
-_YAML_SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ def _summarize_build_file(read: Callable[[Version, str], BuildFacts], version: V
 PARAMETERS = KindRule(
     SubjectKind.PARAMETERS,
     compare_parameters_with_sources,
-    _YAML_SUFFIXES,
+    YAML_SUFFIXES,
     phrase("parameter file added"),
     phrase("parameter file removed"),
     phrase("launch files and users that name the file do not find it"),
@@ -305,7 +304,7 @@ BEHAVIOR_TREE = KindRule(
 MAP = KindRule(
     SubjectKind.MAP,
     compare_map_files,
-    _YAML_SUFFIXES,
+    YAML_SUFFIXES,
     phrase("map added"),
     phrase("map removed"),
     phrase("launch files and users that name the file do not find it"),

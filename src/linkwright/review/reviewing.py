@@ -37,6 +37,7 @@ from linkwright.review.files.build.rosbuild_manifests import compare_rosbuild_ma
 from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
+from linkwright.review.files.parameters.configurations import is_configuration
 from linkwright.review.files.plugin_files import compare_plugin_files
 from linkwright.review.files.worlds.comparing import is_other_world
 from linkwright.review.files.worlds.templates import is_template
@@ -111,8 +112,6 @@ from linkwright.review.versions import Version, Versions
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _Result = TypeVar("_Result")
-_NODE_PARAMETERS = "ros__parameters"
-"""The key above the parameters of a node in a YAML file of ROS 2."""
 _MIN_PARALLEL_DESCRIPTIONS = 4
 """The minimum number of descriptions that are compared by several processes."""
 _LISTED_KINDS = (
@@ -434,17 +433,14 @@ class _Reviewer:
     def _belongs_to_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file belongs to a robot.
 
-        Hidden files, and YAML files outside all packages without parameters of nodes, are settings of tools. Build
-        files of CMake in packages that are built without it have no effect.
+        Hidden files, and YAML files that configure no robot, are settings of tools. Build files of CMake in packages
+        that are built without it have no effect.
         """
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
         if not self._is_used(file):
             return False
         return rule.kind is not SubjectKind.PARAMETERS or any(
-            version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None
-            or _NODE_PARAMETERS in version.text(path)
-            for version, path in sides
-            if path
+            is_configuration(version, path) for version, path in sides if path
         )
 
     def _is_used(self, file: ChangedFile) -> bool:

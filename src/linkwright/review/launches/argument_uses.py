@@ -30,7 +30,12 @@ def uses_argument(file: Path, name: str, entries: Sequence[Entry], *, is_declare
     if not is_declared:
         return is_used(name, others)
     text = _drop_unused_readings(read_code(file))
-    return is_used(name, others) or may_use(text, name) or _COMPUTED_USE.search(text) is not None
+    return is_used(name, others) or may_use(text, name) or uses_computed_arguments(text)
+
+
+def uses_computed_arguments(text: str) -> bool:
+    """Return whether a Python file uses an argument whose name it computes."""
+    return _COMPUTED_USE.search(text) is not None
 
 
 def _drop_unused_readings(text: str) -> str:

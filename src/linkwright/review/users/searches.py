@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
+from linkwright.review.launches.arguments.ignored import find_ignored_arguments
 from linkwright.review.launches.arguments.passed import find_passed_arguments, find_refused_arguments
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
@@ -69,6 +70,7 @@ SEARCHES: tuple[Search, ...] = (
     *(
         find_passed_arguments,
         find_refused_arguments,
+        find_ignored_arguments,
         find_left_nodes,
         find_left_parameters,
         find_lost_interfaces,

@@ -19,6 +19,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameters.between_nodes import find_parameter_moves
 from linkwright.review.files.parameters.bridges import compare_bridges, read_bridges
 from linkwright.review.files.parameters.costmap_topics import FindRemappings
+from linkwright.review.files.parameters.embedded_texts import read_embedded_texts
 from linkwright.review.files.parameters.generated import compare_generated_parameters, is_parameter_description
 from linkwright.review.files.parameters.key_readers import KeyReaders
 from linkwright.review.files.parameters.lists_of_mappings import (
@@ -206,11 +207,14 @@ def _rank_values(items: Sequence[str]) -> list[int]:
 def _compose_root(text: str) -> yaml.Node | None:
     """Return the root of a YAML document with at most as many values as a parameter file.
 
+    Texts in it that are YAML themselves are read as such.
+
     Raises:
         UnreadableFileError: the text is not YAML, or has too many values.
     """
     root = compose_yaml(text)
     if root is not None:
+        read_embedded_texts(root)
         collect_values(root, {})
     return root
 

@@ -50,7 +50,7 @@ def find_passed_arguments(versions: Versions, changed_files: Sequence[ChangedFil
 
 def _find_lost_arguments(versions: Versions, old_path: str, new_path: str) -> dict[str, Phrase]:
     """Return the arguments that only the old version of a launch file declares, with the effect on callers."""
-    old, new = _try_read(versions.old, old_path), _try_read(versions.new, new_path)
+    old, new = try_read(versions.old, old_path), try_read(versions.new, new_path)
     if old is None or new is None or old.is_ros1 != new.is_ros1:
         return {}
     remaining = {entry.name for entry in new.entries if entry.has_value}
@@ -62,18 +62,18 @@ def _find_lost_arguments(versions: Versions, old_path: str, new_path: str) -> di
     text = read_code(versions.new.file(new_path))
     actions = IncludedActions(versions.new, new_path, new)
     old_actions = IncludedActions(versions.old, old_path, old)
-    used = {name for name in names if _names_outside_of_keys(text, name)}
+    used = {name for name in names if names_outside_of_keys(text, name)}
     used |= {name for name in names if actions.passes_on(name) or old_actions.passes_to_unknown_file(name)}
     return {name: phrase("the value has no effect") for name in sorted(names - used)}
 
 
-def _names_outside_of_keys(text: str, name: str) -> bool:
+def names_outside_of_keys(text: str, name: str) -> bool:
     """Return whether a text contains a name, except as a key such as ``'NAME': ...`` of an argument that it passes."""
     return re.search(rf"(?<![\w.-]){re.escape(name)}(?![\w.-]|[\"']\s*:)", text) is not None
 
 
 def _check_caller(version: Version, path: str, lost: dict[str, dict[str, Phrase]]) -> Iterator[Change]:
-    for entry, included_path, passed in _find_passed(version, path):
+    for entry, included_path, passed in find_passed(version, path):
         names = lost.get(included_path, {})
         for name in (name for name in names if name in passed):
             values = {"name": name, "file": included_path}
@@ -88,7 +88,7 @@ def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFi
             continue
         known = set(_find_refused(versions.old, file.old_path))
         for (included_path, name), entry in _find_refused(versions.new, file.new_path).items():
-            old = _try_read(versions.old, included_path)
+            old = try_read(versions.old, included_path)
             was_declared = old is not None and any(other.has_value and other.name == name for other in old.entries)
             if (included_path, name) in known or was_declared:
                 continue
@@ -128,14 +128,14 @@ def _check_chosen_files(versions: Versions, old_path: str, new_path: str) -> Ite
 
 def _find_chosen_refusals(version: Version, path: str) -> list[tuple[Entry, dict[str, tuple[str, set[str]]]]]:
     """Return the includes of ROS 1 with the files that one argument can choose, and the arguments that each refuses."""
-    outline = _try_read(version, path)
+    outline = try_read(version, path)
     found = []
     for entry in [] if outline is None or not outline.is_ros1 else outline.entries:
         chosen = find_chosen_files(version, entry.name) if entry.kind == "include" else {}
         passed = _list_passed(entry)
         files: dict[str, tuple[str, set[str]]] = {}
         for word, file in chosen.items():
-            included = _try_read(version, file)
+            included = try_read(version, file)
             if included is not None:
                 files[word] = file, passed - {other.name for other in included.entries if other.has_value}
         found.append((entry, files))
@@ -151,15 +151,15 @@ def _list_passed(entry: Entry) -> set[str]:
 def _find_refused(version: Version, path: str) -> dict[tuple[str, str], Entry]:
     """Return the includes that fail in ROS 1, by the path of the included file and the argument that it refuses."""
     refused: dict[tuple[str, str], Entry] = {}
-    for entry, included_path, passed in _find_passed(version, path, is_ros1=True):
-        included = _try_read(version, included_path)
+    for entry, included_path, passed in find_passed(version, path, is_ros1=True):
+        included = try_read(version, included_path)
         if included is not None and included.is_ros1:
             declared = {other.name for other in included.entries if other.has_value}
             refused |= {(included_path, name): entry for name in sorted(passed - declared)}
     return refused
 
 
-def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Iterator[tuple[Entry, str, set[str]]]:
+def find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Iterator[tuple[Entry, str, set[str]]]:
     """Yield the includes of a file with the path of the included file and the names of the passed arguments.
 
     Args:
@@ -167,7 +167,7 @@ def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Itera
         path: the path of the file.
         is_ros1: whether to leave out files of ROS 2.
     """
-    outline = _try_read(version, path)
+    outline = try_read(version, path)
     if outline is None or (is_ros1 and not outline.is_ros1):
         return
     actions = IncludedActions(version, path, outline)
@@ -178,7 +178,8 @@ def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Itera
             yield entry, included_path, _list_passed(entry)
 
 
-def _try_read(version: Version, path: str) -> LaunchOutline | None:
+def try_read(version: Version, path: str) -> LaunchOutline | None:
+    """Return the actions of a launch file, or None if it cannot be read."""
     try:
         return read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
