@@ -19,6 +19,7 @@ from linkwright.review.sources.headers.lost_methods import find_lost_methods
 from linkwright.review.sources.headers.lost_types import find_lost_types
 from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.python_callers import find_broken_callers
+from linkwright.review.users.faulty_code import find_faulty_code
 from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers
@@ -79,5 +80,5 @@ SEARCHES: tuple[Search, ...] = (
     ),
     *(find_new_lookups, find_lost_joints, find_lost_states, find_lost_units, find_silent_scripts, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
-    *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures),
+    *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures, find_faulty_code),
 )
