@@ -122,6 +122,32 @@ def test_package_with_another_manifest_in_another_folder_is_moved(repository, co
     assert [subject.path for subject in result.subjects] == ["tools/arm_tools/package.xml"]
 
 
+def sibling_files(*names: str) -> dict[str, str]:
+    """Return the files of packages that differ only in their names."""
+    files = {}
+    for name in names:
+        included = f"$(find {name})/launch/view.launch"
+        files |= {
+            f"{name}/package.xml": f"<package><name>{name}</name><version>1.0.0</version></package>\n",
+            f"{name}/launch/demo.launch": f"<launch>\n<include file='{included}'>\n<arg name='unknown' value='1'/>\n"
+            "</include>\n</launch>\n",
+            f"{name}/launch/view.launch": f"<launch>\n<node pkg='{name}' type='view' name='view'/>\n</launch>\n",
+        }
+    return files
+
+
+def test_files_of_similar_packages_are_paired_within_their_package(repository, compare):
+    """Git pairs similar files of different packages."""
+    repository.commit(sibling_files("arm_a", "arm_b", "arm_c"))
+    new = sibling_files("z_arm_a", "y_arm_b", "x_arm_c")
+    repository.commit({**dict.fromkeys(sibling_files("arm_a", "arm_b", "arm_c")), **new})
+    found = {found.path: sentences(found) for found in compare(repository, "HEAD~1..HEAD").subjects if found.changes}
+    assert found == {
+        f"{new}/package.xml": [f"package '{old}' renamed to '{new}'"]
+        for old, new in (("arm_a", "z_arm_a"), ("arm_b", "y_arm_b"), ("arm_c", "x_arm_c"))
+    }
+
+
 def test_findings_that_name_the_renamed_package_are_neither_new_nor_fixed(package, compare):
     mesh = '<visual><geometry><mesh filename="package://arm_description/meshes/none.stl"/></geometry></visual>'
     robot = f'<robot name="tool"><link name="tool">{mesh}</link></robot>'

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
 from itertools import chain
 from pathlib import PurePosixPath
 from typing import NamedTuple
@@ -78,27 +79,50 @@ def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
     return packages
 
 
-def _pair_manifests(versions: Versions) -> Iterator[tuple[str, str]]:
-    """Yield the old and new paths of changed manifests.
+def _pair_manifests(versions: Versions) -> list[tuple[str, str]]:
+    """Return the old and new paths of changed manifests.
 
-    A removed and an added manifest are a pair if no other changed manifest has the name of their package.
+    A removed and an added manifest are a pair if no other changed manifest has the name of their package, or if other
+    files moved from one package to the other. Those with new names are then paired by these, because similar packages
+    may differ in little else.
     """
     removed: dict[str | None, list[str]] = {}
     added: dict[str | None, list[str]] = {}
+    pairs: list[tuple[str, str]] = []
     for file in versions.changed_files:
         if PurePosixPath(file.path).name != MANIFEST:
             continue
         if file.old_path and file.new_path:
-            yield file.old_path, file.new_path
+            pairs.append((file.old_path, file.new_path))
         elif file.old_path:
             removed.setdefault(_read_name(versions.old, file.old_path), []).append(file.old_path)
         elif file.new_path:
             added.setdefault(_read_name(versions.new, file.new_path), []).append(file.new_path)
-    for name in removed.keys() & added.keys() - {None}:
-        if len(removed[name]) == len(added[name]) == 1:
-            yield removed.pop(name)[0], added.pop(name)[0]
+    unique = [name for name in removed if name and len(removed[name]) == len(added.get(name, ())) == 1]
+    pairs += [(removed.pop(name)[0], added.pop(name)[0]) for name in unique]
     old_paths, new_paths = (list(chain.from_iterable(paths.values())) for paths in (removed, added))
-    yield from _pair_by_moved_files(versions.changed_files, old_paths, new_paths)
+    pairs += _pair_by_moved_files(versions.changed_files, old_paths, new_paths)
+    return _pair_by_names(versions, pairs)
+
+
+def _pair_by_names(versions: Versions, pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return pairs of manifests, with those of packages with new names paired by the most similar names.
+
+    Manifests with equally similar names are paired as given.
+    """
+    names = {old: _read_name(versions.old, old) or "" for old, _ in pairs}
+    new_names = {new: _read_name(versions.new, new) or "" for _, new in pairs}
+    moved = [pair for pair in pairs if names[pair[0]] != new_names[pair[1]]]
+    ratios = {
+        (old, new): SequenceMatcher(None, names[old], new_names[new], autojunk=False).ratio()
+        for old, _ in moved
+        for _, new in moved
+    }
+    paired = {old: new for old, new in pairs if (old, new) not in moved}
+    for old, new in sorted(ratios, key=lambda pair: (-ratios[pair], pair not in moved)):
+        if old not in paired and new not in paired.values():
+            paired[old] = new
+    return list(paired.items())
 
 
 def _pair_by_moved_files(
@@ -135,29 +159,40 @@ def _read_name(version: Version, path: str) -> str | None:
 
 
 def match_moved_files(versions: Versions) -> Versions:
-    """Return versions that match the old and new files of moved packages.
+    """Return versions that match the old and new files of moved packages by their paths in the package.
 
-    Git does not recognize all of these files as moved.
+    Git does not recognize all of these files as moved, and pairs equal files of different packages.
     """
     packages = find_renamed_packages(versions)
     names = PackageNames(packages)
-    added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
-    moved: dict[str, ChangedFile] = {}
+    moved = [file for file in versions.changed_files if file.old_path != file.new_path]
+    free = {file.new_path for file in moved if file.new_path is not None}
+    pairs: dict[str, str] = {}
+    for old_path in (file.old_path for file in moved if file.old_path is not None):
+        paths = (
+            path for package in packages for path in (package.new_path(old_path), package.derive_path(old_path, names))
+        )
+        new_path = next((path for path in paths if path in free), None)
+        if new_path is not None:
+            pairs[old_path] = new_path
+            free.remove(new_path)
+    taken = set(pairs.values())
+    files: list[ChangedFile] = []
     for file in versions.changed_files:
-        old_path = None if file.new_path else file.old_path
-        paths = [
-            path
-            for package in packages
-            if old_path is not None
-            for path in (package.new_path(old_path), package.derive_path(old_path, names))
-        ]
-        added_file = next((added[path] for path in paths if path in added), None)
-        if added_file is not None:
-            moved[file.path] = moved[added_file.path] = ChangedFile(
-                file.old_path, added_file.new_path, file.is_submodule
-            )
-    files = [moved.get(file.path, file) for file in versions.changed_files]
-    return replace(versions, changed_files=list(dict.fromkeys(files)))
+        if file.old_path == file.new_path:
+            files.append(file)
+            continue
+        moved_to = None if file.old_path is None else pairs.get(file.old_path)
+        if moved_to is not None:
+            files.append(replace(file, new_path=moved_to))
+        rest = replace(
+            file,
+            old_path=file.old_path if moved_to is None else None,
+            new_path=None if file.new_path in taken else file.new_path,
+        )
+        if rest.path:
+            files.append(rest)
+    return replace(versions, changed_files=files)
 
 
 class PackageNames:

@@ -83,14 +83,16 @@ def _check_caller(version: Version, path: str, lost: dict[str, dict[str, Phrase]
 
 def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the changed launch files of ROS 1 that newly pass an argument which the included file never declared."""
+    old_paths = {file.new_path: file.old_path for file in changed_files if file.old_path and file.new_path}
     for file in changed_files:
         if not (file.old_path and file.new_path and is_launch_file(file.new_path)):
             continue
         known = set(_find_refused(versions.old, file.old_path))
         for (included_path, name), entry in _find_refused(versions.new, file.new_path).items():
-            old = try_read(versions.old, included_path)
+            old_included_path = old_paths.get(included_path, included_path)
+            old = try_read(versions.old, old_included_path)
             was_declared = old is not None and any(other.has_value and other.name == name for other in old.entries)
-            if (included_path, name) in known or was_declared:
+            if (old_included_path, name) in known or was_declared:
                 continue
             text = phrase("passes '{name}' to '{file}', which has no such argument", name=name, file=included_path)
             location = Location(file.new_path, entry.span.line, entry.span.column)
