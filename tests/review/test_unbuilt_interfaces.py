@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.review.changes import Location
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -53,6 +54,18 @@ def test_added_interface_that_is_not_built_is_named(repository, compare, listed,
     repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", "")})
     repository.write({CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\n"})
     assert sentences(subject(compare(repository), PATH)) == [expected]
+
+
+@pytest.mark.parametrize("listed", ["", "srv/Move.srv"])
+def test_added_interface_that_cannot_be_read_breaks_the_build_if_it_is_built(repository, compare, listed):
+    repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", "")})
+    repository.write({CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\narm_msgs/State\n"})
+    (added, fault) = subject(compare(repository), PATH).changes
+    assert str(added.sentence) == "interface added"
+    assert str(fault.sentence).startswith("the definition cannot be read: 'arm_msgs/State' is neither a field")
+    assert (str(fault.reason), fault.location) == (
+        ("the package does not build", Location(PATH, 3, 1)) if listed else ("None", None)
+    )
 
 
 @pytest.mark.parametrize(

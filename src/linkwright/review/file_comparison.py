@@ -14,6 +14,7 @@ from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
+from linkwright.review.files.interfaces import find_syntax_errors
 from linkwright.review.files.parameters.generated import generates_code
 from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
@@ -124,6 +125,8 @@ def _describe_unpaired_file(
         changes, images = _describe_contents(version, kind, path, drawings)
         if kind is SubjectKind.LAUNCH_FILE and new_path is not None:
             changes += find_undefined_names(version, path)
+        elif kind is SubjectKind.INTERFACE and new_path is not None:
+            changes += find_syntax_errors(version, path)
         problems += [] if new_path is None else _find_unreadable(version, kind, path, text, changes)
     except Exception as error:  # noqa: BLE001
         problems.append(make_problem(error))

@@ -15,7 +15,7 @@ from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.manifest import ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.review.changes import MAX_NAMES, Effect, Location
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.containing_interfaces import find_containing_interfaces
@@ -150,6 +150,22 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
         phrase("CMakeLists.txt did not build it") if version.is_old else phrase("CMakeLists.txt does not build it")
     )
     return unbuilt if contents is None else joined([contents, unbuilt], "; ")
+
+
+def find_syntax_errors(version: Version, path: str) -> list[Change]:
+    """Return a change if an added interface is built and cannot be read; otherwise an empty list."""
+    try:
+        read_structures(version.file(path))
+    except LinkwrightError as error:
+        diagnostic = error.diagnostics[0]
+        text = phrase("the definition cannot be read: {reason}", reason=diagnostic.message)
+        if is_unbuilt(version, path):
+            return [Change(text)]
+        line = diagnostic.span.line if diagnostic.span is not None else 1
+        return [Change(text, Effect.BREAKING, phrase("the package does not build"), Location(path, line, 1))]
+    except (LimitError, OSError):
+        pass
+    return []
 
 
 def _format_type(field: Field, *, is_ros1: bool) -> str:
