@@ -258,6 +258,34 @@ def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, ne
     assert breaking(compare(repository)) == [expected]
 
 
+METHODS = """class Reader:
+    size = 3
+    names = [size for _ in range(size)]
+
+    def read(self, limit=size):
+        return self.convert(limit)
+
+    def convert(self, text):
+        return text
+"""
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        (METHODS.replace("self.convert(", "convert("), ["uses 'convert', which nothing defines"]),
+        (METHODS.replace("return text", "return text * size"), ["uses 'size', which nothing defines"]),
+        (METHODS.replace("limit=size", "limit=2 * size"), []),
+        (METHODS.replace("return text", "return max(limit for limit in text)"), []),
+        (METHODS.replace("self.convert(", "convert(") + "\n\nfrom arm.tools import convert\n", []),
+    ],
+)
+def test_functions_do_not_see_the_names_of_their_class(repository, compare, new, expected):
+    repository.commit({**MANIFEST, "arm/scripts/reader.py": METHODS})
+    repository.write({"arm/scripts/reader.py": new})
+    assert breaking(compare(repository)) == expected
+
+
 def test_an_undefined_name_of_an_added_source_is_told_and_breaks_nothing(repository, compare):
     repository.commit(MANIFEST)
     repository.write({"arm/scripts/half.py": USER.replace("math.floor(", "np.floor(")})

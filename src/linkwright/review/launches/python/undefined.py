@@ -30,12 +30,12 @@ def report_undefined_names(pair: FilePair) -> None:
         return
     old, new = read_source_names(pair.old_file), read_source_names(pair.new_file)
     for name, span in new.undefined_names.items():
-        if name in old.bound_names:
-            text = phrase("uses '{name}', which it no longer defines or imports", name=name)
-        elif name not in old.undefined_names:
-            text = phrase("uses '{name}', which it does not define or import", name=name)
-        else:
+        if name in old.undefined_names:
             continue
+        if name in old.bound_names - new.bound_names:
+            text = phrase("uses '{name}', which it no longer defines or imports", name=name)
+        else:
+            text = phrase("uses '{name}', which it does not define or import", name=name)
         pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
     if not any(_find_called_literals(try_read_source(pair.old_file))):
         for span in _find_called_literals(try_read_source(pair.new_file)):

@@ -35,7 +35,9 @@ def find_undefined_uses(
     """
     for name, span in new.undefined_names.items():
         reason = phrase("the code that uses the name fails")
-        if name in old.bound_names:
+        if name in old.undefined_names:
+            continue
+        if name in old.bound_names - new.bound_names:
             yield UndefinedUse(phrase("uses '{name}', which it no longer defines or imports", name=name), span, reason)
         elif is_added or (old.bound_names and not old.undefined_names):
             text = phrase("uses '{name}', which nothing defines", name=name)
