@@ -72,6 +72,14 @@ def test_the_source_of_another_package_that_has_the_new_name_is_named(find_reaso
     ]
 
 
+@pytest.mark.parametrize(("launch", "is_named"), [("Node()\n", True), ("Node(namespace='stove')\n", False)])
+def test_relative_names_are_the_same_without_namespaces(find_reasons, launch, is_named):
+    sources = [source.replace("/boiler/heat", "boiler/heat") for source in (TALKER, LISTENER)]
+    files = make_files(*sources, launch__all_DOT_launch_DOT_py=launch)
+    (reason, _) = find_reasons(files, {f"p{n}/p{n}/part{n}.py": sources[n].replace("heat", "warmth") for n in (0, 1)})
+    assert ("'part1.py' subscribes to 'boiler/warmth'" in reason) == is_named
+
+
 def test_a_client_that_follows_a_server_of_another_package_is_not_breaking(repository, compare):
     repository.commit(make_files(CALLER, SERVER.replace("start", "begin")))
     repository.write({"p0/p0/part0.py": CALLER.replace("start", "begin")})

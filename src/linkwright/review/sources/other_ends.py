@@ -33,6 +33,7 @@ _IMPLIED = re.compile(
     r"compressed\w*|theora|ffmpeg|zstd|draco|cloudini|\w*_parameters?(?:_types|_atomically)?|change_state|get_state"
 )
 """The last parts of names that nodes and plugins add by themselves."""
+_NAMESPACE = re.compile(r"Push\w*Namespace|push[-_]\w+[-_]namespace|__ns\b|\b(?:ns|namespace)\s*=\s*(?![\"']{2})")
 _NAME = re.compile(r"[~/]*\w+(?:/\w+)*")
 
 
@@ -92,7 +93,7 @@ def describe_new_end(
     """
     if reason is None or item.kind not in COMMUNICATION_KINDS or not _NAME.fullmatch(item.name):
         return reason
-    end = _find_end(item, None, new, path)
+    end = _find_certain_end(item, None, new, path)
     if end is not None:
         return _add(reason, item, PurePosixPath(end.path).name)
     is_left = _find_end(old_item, old, new, path) is not None
@@ -145,9 +146,9 @@ def _add(reason: Phrase, item: SourceName, file: str | None) -> Phrase:
 
 
 def _find_end(item: SourceName, old: ChangedSources | None, new: ChangedSources, path: str) -> OtherEnd | None:
-    """Return the source of the repository with the other end of a name, or None if it is not certain.
+    """Return the source of the repository with the other end of a name, or None if it is unknown.
 
-    Sources of the same package come first. In other packages, the types must be equal, or the name has several parts.
+    In the same package, namespaces and types are ignored.
 
     Args:
         item: the name.
@@ -156,8 +157,14 @@ def _find_end(item: SourceName, old: ChangedSources | None, new: ChangedSources,
         path: the path of the source with the name.
     """
     user = new.find_user(item, path, old)
-    if user is not None:
-        return OtherEnd(user)
+    return _find_certain_end(item, old, new, path) if user is None else OtherEnd(user)
+
+
+def _find_certain_end(item: SourceName, old: ChangedSources | None, new: ChangedSources, path: str) -> OtherEnd | None:
+    """Return the source of any package that certainly has the other end of a name, or None; see `_find_end`.
+
+    The types must be equal, or the name has several parts.
+    """
     kind = get_counterpart(item.kind)
     if kind is None or not _NAME.fullmatch(item.name):
         return None
@@ -182,7 +189,8 @@ def _list_ends(
             if is_typed and not item.has_type_of(other):
                 continue
             for name, controller, file in _list_full_names(other, names, sources.version):
-                if name in own and (is_typed or "/" in name):
+                is_full = item.name.startswith(("/", "~")) and other.name.startswith(("/", "~"))
+                if name in own and (is_typed or "/" in name) and (is_full or not _has_namespaces(sources.version)):
                     yield OtherEnd(other_path, controller, file), other
 
 
@@ -241,6 +249,11 @@ def _keeps_name(version: Version, node: str) -> bool:
     """Return whether launch files certainly do not give a node another name: they name it, or name no node."""
     texts = _read_launch_texts(version)
     return not texts or any(f'"{node}"' in text or f"'{node}'" in text for text in texts)
+
+
+def _has_namespaces(version: Version) -> bool:
+    """Return whether a launch file may give nodes a namespace, so that equal relative names may differ."""
+    return any(map(_NAMESPACE.search, _read_launch_texts(version)))
 
 
 def _is_remapped(version: Version, names: set[str]) -> bool:
