@@ -90,6 +90,21 @@ def test_a_client_of_a_node_with_another_name_in_the_source(repository, compare)
 
 
 @pytest.mark.parametrize(
+    ("own", "topic", "is_found"),
+    [("~/state", "/lamp/state", True), ("~/state", "/lamp/level", False), ("state", "/lamp/state", False)],
+)
+def test_a_subscriber_to_a_private_topic_of_a_node_with_another_name(repository, compare, own, topic, is_found):
+    path, source = "lamp/launch/a.launch.xml", "view/view.py"
+    launches = [LAUNCH.format(name=name, more="") for name in ("lamp", "light")]
+    node = f"{SOURCE.format('lamp')}        self.create_publisher(Bool, '{own}', 1)\n"
+    view = f"{SOURCE.format('view')}        self.create_subscription(Bool, '{topic}', print, 1)\n"
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/lamp/lamp.py": node, source: view, path: launches[0]})
+    repository.write({path: launches[1]})
+    found = [line for line in breaking(compare(repository)) if line.startswith("uses ")]
+    assert found == ([f"uses '{topic}' of the node 'lamp', which '{path}' now calls 'light'"] if is_found else [])
+
+
+@pytest.mark.parametrize(
     ("name", "settings", "more", "is_found"),
     [
         ("desk_lamb", SETTINGS.format("desk_lamp"), "", True),

@@ -72,6 +72,14 @@ def test_the_source_of_another_package_that_has_the_new_name_is_named(find_reaso
     ]
 
 
+@pytest.mark.parametrize(("launch", "is_named"), [("Node()\n", True), ("Node(namespace='stove')\n", False)])
+def test_relative_names_are_the_same_without_namespaces(find_reasons, launch, is_named):
+    sources = [source.replace("/boiler/heat", "boiler/heat") for source in (TALKER, LISTENER)]
+    files = make_files(*sources, launch__all_DOT_launch_DOT_py=launch)
+    (reason, _) = find_reasons(files, {f"p{n}/p{n}/part{n}.py": sources[n].replace("heat", "warmth") for n in (0, 1)})
+    assert ("'part1.py' subscribes to 'boiler/warmth'" in reason) == is_named
+
+
 def test_a_client_that_follows_a_server_of_another_package_is_not_breaking(repository, compare):
     repository.commit(make_files(CALLER, SERVER.replace("start", "begin")))
     repository.write({"p0/p0/part0.py": CALLER.replace("start", "begin")})
@@ -100,6 +108,7 @@ void Heater::on_configure() {
 }
 PLUGINLIB_EXPORT_CLASS(boiler::Heater, controller_interface::ControllerInterface)
 """
+LEFT_CONTROLLER = "'heater.cpp' still subscribes to '/main_heater/goal' as controller 'main_heater' of 'all.yaml'"
 MANAGER = "controller_manager:\n  ros__parameters:\n    main_heater: {type: boiler/Heater}\n"
 
 
@@ -108,8 +117,7 @@ MANAGER = "controller_manager:\n  ros__parameters:\n    main_heater: {type: boil
     [
         (
             MANAGER,
-            "'heater.cpp' still subscribes to '/main_heater/goal' as controller 'main_heater' of 'all.yaml'"
-            "; nothing in the repository subscribes to '/main_heater_2/goal'",
+            f"{LEFT_CONTROLLER}; nothing in the repository subscribes to '/main_heater_2/goal'",
         ),
         (
             MANAGER.replace("main_heater", "other_heater"),
@@ -133,3 +141,33 @@ def test_a_private_topic_has_the_name_of_its_node(find_reasons, node, is_left):
     files = make_files(source, private, launch__all_DOT_launch_DOT_py=launch)
     (reason,) = find_reasons(files, {"p0/p0/part0.py": source.replace("heat", "warmth")})
     assert reason.startswith(f"'part1.py' still subscribes to '/{node}/heat'") == is_left
+
+
+PARAMETER = """        self.declare_parameter("source", "/boiler/heat")
+        name = self.get_parameter("source").value
+        self.create_subscription(Float64, name, print, 1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("others", "is_left"),
+    [({}, True), ({"config__other_DOT_yaml": "part:\n  ros__parameters:\n    source: /stove/warmth\n"}, False)],
+)
+def test_a_parameter_that_no_file_sets_gives_a_name_by_default(find_reasons, others, is_left):
+    files = make_files(TALKER, f"{HEAD}{PARAMETER}", **others)
+    (reason,) = find_reasons(files, {"p0/p0/part0.py": TALKER.replace("/boiler/heat", "/stove/new")})
+    assert reason.startswith("'part1.py' still subscribes to '/boiler/heat'") == is_left
+
+
+def test_another_topic_in_a_parameter_file_names_the_subscriber(find_reasons):
+    """The publisher has the topic from its parameter file."""
+    talker = HEAD + PARAMETER.replace(
+        "create_subscription(Float64, name, print, 1)", "create_publisher(Float64, name, 1)"
+    )
+    settings = "part:\n  ros__parameters:\n    source: /stove/warmth\n"
+    files = make_files(talker, LISTENER.replace("/boiler/heat", "/stove/warmth"))
+    files["p0/config/part.yaml"] = settings
+    new = {"p0/config/part.yaml": settings.replace("/stove/warmth", "/hearth")}
+    assert find_reasons(files, new) == [
+        "'part1.py' still subscribes to '/stove/warmth'; nothing in the repository subscribes to '/hearth'"
+    ]

@@ -16,6 +16,7 @@ from linkwright.review.files.parameters.names import find_node_name
 from linkwright.review.files.parameters.yaml_values import YamlValue
 from linkwright.review.launches.loaded_remappings import find_loaded_remappings
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
+from linkwright.review.sources.other_ends import find_given_reason
 from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.sources.reasons import find_message_frame_reason
@@ -75,7 +76,11 @@ class GivenNames:
         if not given or any(kind not in _OFFERED_KINDS for kind, _ in given):
             return None
         kind, source = min(given, key=lambda item: _OFFERED_KINDS.index(item[0]))
-        return _explain(kind, old.text, source)
+        reason = _explain(kind, old.text, source)
+        is_frame = kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME)
+        if reason is None or is_frame:
+            return reason
+        return find_given_reason(reason, kind, (old.text, new.text), self.versions, self.path)
 
     def _is_given_elsewhere(self, parameter: str, name: str) -> bool:
         """Return whether another parameter of the new file has a name as value."""

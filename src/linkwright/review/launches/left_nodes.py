@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.suggest import is_misspelled
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.manifest import package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameters.names import find_node_name
@@ -17,14 +18,17 @@ from linkwright.review.files.parameters.yaml_values import YamlValue, read_yaml_
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.programs.sources import list_nodes, read_launch_files, try_read_outline
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName
 from linkwright.review.sources.reading import read_source_names
+from linkwright.review.sources.unchanged_sources import get_counterpart
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SETTINGS_SUFFIXES = (".yaml", ".yml")
 _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
 _SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/(?P<path>[\w./-]+\.ya?ml)(?![\w.])")
 _WILDCARDS = ("*", "**")
+_PRIVATE = re.compile(r"[\"']~")
 _PLAIN_NAME = re.compile(r"\w+")
 _MIN_LETTERS = 3
 """The minimum length of a word that can be a misspelling of another word."""
@@ -59,7 +63,7 @@ def find_left_nodes(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
     """Yield the users of a node to which a launch file gives another name now.
 
-    They are the parameter files that the launch file loads for it, and the sources that call its services.
+    They are the parameter files that the launch file loads for it, and the sources that use its private names.
     """
     old, new = try_read_outline(versions.old, old_path), try_read_outline(versions.new, new_path)
     if old is None or new is None:
@@ -72,7 +76,7 @@ def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> It
         if len(same) != 1 or not _PLAIN_NAME.fullmatch(name) or not old_names.isdisjoint(started):
             continue
         for old_name in sorted(old_names):
-            yield from _find_clients(versions.new, old_name, name, new_path)
+            yield from _find_users(versions.new, old_name, name, new_path, entry.name.partition("/")[0])
         for path in _find_files(versions.new, new_path, new, entry):
             nodes = _read_nodes(versions.new, path)
             if not nodes or name in nodes or not nodes.keys().isdisjoint(_WILDCARDS):
@@ -140,7 +144,7 @@ def _is_same_node(first: str, second: str) -> bool:
 def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
     """Yield the users of a node to which a source gives another name now.
 
-    They are the parameter files of its package, and the sources that call its services.
+    They are the parameter files of its package, and the sources that use its private names.
     """
     names = []
     for version, path in ((versions.old, old_path), (versions.new, new_path)):
@@ -154,15 +158,15 @@ def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterato
     (old_name,), (new_name,) = names
     if not _PLAIN_NAME.fullmatch(old_name) or _is_named(versions.new, old_name, new_name):
         return
-    yield from _find_clients(versions.new, old_name, new_name, new_path)
+    yield from _find_users(versions.new, old_name, new_name, new_path, package_name(versions.new.file(package)) or "")
     for path in versions.new.paths(_SETTINGS_SUFFIXES, package):
         nodes = _read_nodes(versions.new, path) if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) else {}
         if old_name in nodes and new_name not in nodes and nodes.keys().isdisjoint(_WILDCARDS):
             yield path, _make_change(path, old_name, new_name, new_path, nodes[old_name])
 
 
-def _find_clients(version: Version, old: str, new: str, file: str) -> Iterator[tuple[str, Change]]:
-    """Yield the sources that call a service of a node by its old name, such as ``/lamp/set_parameters``.
+def _find_users(version: Version, old: str, new: str, file: str, package: str) -> Iterator[tuple[str, Change]]:
+    """Yield the sources that use a private name of a node with its old name, such as ``/lamp/set_parameters``.
 
     Sources that also use the new name are left out.
 
@@ -171,28 +175,45 @@ def _find_clients(version: Version, old: str, new: str, file: str) -> Iterator[t
         old: the old name of the node.
         new: its new name.
         file: the path of the file that gives it the new name.
+        package: the name of its package, whose sources tell its private topics, services and actions.
     """
     if not _PLAIN_NAME.fullmatch(old):
         return
+    private = _read_private_names(version, package)
     for path in version.paths(_SOURCE_SUFFIXES):
         is_searched = TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and f"{old}/" in version.text(path)
         if not is_searched or is_launch_file_name(PurePosixPath(path).name):
             continue
-        clients: dict[str, SourceName] = {}
-        for client in read_source_names(version.file(path)).of_kind(NameKind.CLIENT):
-            node, _, service = client.name.rpartition("/")
-            if service in _NODE_SERVICES:
-                clients.setdefault(node.rpartition("/")[2], client)
-        if old in clients and new not in clients:
-            text = phrase(
-                "calls '{service}' of the node '{old}', which '{file}' now calls '{new}'",
-                service=clients[old].name,
-                old=old,
-                file=file,
-                new=new,
-            )
-            location = Location(path, clients[old].span.line, clients[old].span.column)
-            yield path, Change(text, Effect.BREAKING, phrase("with this name, no node has the service"), location)
+        names = [item for item in read_source_names(version.file(path)).names if item.kind in COMMUNICATION_KINDS]
+        found = {node: next((item for item in names if _is_private(item, node, private)), None) for node in (old, new)}
+        user = found[old]
+        if user is None or found[new] is not None:
+            continue
+        values = {"name": user.name, "old": old, "file": file, "new": new}
+        text = phrase("uses '{name}' of the node '{old}', which '{file}' now calls '{new}'", **values)
+        reason = phrase("with this name, no node has the topic, service or action")
+        if user.kind is NameKind.CLIENT:
+            text = phrase("calls '{name}' of the node '{old}', which '{file}' now calls '{new}'", **values)
+            reason = phrase("with this name, no node has the service")
+        yield path, Change(text, Effect.BREAKING, reason, Location(path, user.span.line, user.span.column))
+
+
+def _is_private(item: SourceName, node: str, private: Collection[tuple[NameKind, str]]) -> bool:
+    """Return whether a name is the other end of a private name of a node, or that of a service of each node."""
+    if item.kind is NameKind.CLIENT and item.name.rpartition("/")[2] in _NODE_SERVICES:
+        return item.name.rpartition("/")[0].rpartition("/")[2] == node
+    name = item.name.strip("/")
+    return name.startswith(f"{node}/") and (get_counterpart(item.kind), name.removeprefix(f"{node}/")) in private
+
+
+def _read_private_names(version: Version, package: str) -> set[tuple[NameKind, str]]:
+    """Return the private topics, services and actions in the sources of a package, each with its kind."""
+    share = version.shares.get(package)
+    folder = None if share is None else version.relative(share)
+    paths = () if folder is None else version.paths(_SOURCE_SUFFIXES, "" if folder == "." else folder)
+    names = (read_source_names(version.file(path)).names for path in paths if _PRIVATE.search(version.text(path)))
+    items = (item for found in names for item in found if item.kind in COMMUNICATION_KINDS)
+    return {(item.kind, item.name.lstrip("~/")) for item in items if item.name.startswith("~")}
 
 
 def _is_named(version: Version, name: str, new_name: str) -> bool:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Collection
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.names import DefaultName, NameKind, SourceNames
 from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.sources.separate_programs import find_programs
@@ -61,8 +62,7 @@ def is_set_in_package(version: Version, package: str | None, parameter: str, pat
     """
     if package is None:
         return False
-    name = re.escape(parameter.lstrip("~/"))
-    setting = re.compile(rf"(?<![\w/.-]){name}[\"']?\s*:|[\"']~?{name}[\"']")
+    setting = _compile_setting(parameter)
     own, others = find_programs(version, package, path)
     for setting_path in version.paths(_SETTING_SUFFIXES, package):
         text = version.text(setting_path)
@@ -70,6 +70,19 @@ def is_set_in_package(version: Version, package: str | None, parameter: str, pat
         if setting.search(text) and not (own and is_of_others):
             return True
     return False
+
+
+@cached_in_review(maxsize=256)
+def is_set_in_repository(version: Version, parameter: str) -> bool:
+    """Return whether a launch file or parameter file of any package may set a parameter of any node."""
+    setting = _compile_setting(parameter)
+    return any(setting.search(version.text(path)) for path in version.paths(_SETTING_SUFFIXES))
+
+
+def _compile_setting(parameter: str) -> re.Pattern[str]:
+    """Return the pattern of the name of a parameter where a file sets it."""
+    name = re.escape(parameter.lstrip("~/"))
+    return re.compile(rf"(?<![\w/.-]){name}[\"']?\s*:|[\"']~?{name}[\"']")
 
 
 def _names(text: str, programs: Collection[str]) -> bool:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameters.names import read_controller_classes
 from linkwright.review.files.parameters.yaml_values import read_yaml_values
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources
+from linkwright.review.sources.default_names import is_set_in_repository
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
+from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.sources.unchanged_sources import get_counterpart, make_user_reason
 from linkwright.review.texts.comments import without_comments
-from linkwright.review.versions import TEST_FOLDERS, Version
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _OFFERED_KINDS = (NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION)
 _SETTING_SUFFIXES = (".yaml", ".yml")
@@ -30,6 +33,7 @@ _IMPLIED = re.compile(
     r"compressed\w*|theora|ffmpeg|zstd|draco|cloudini|\w*_parameters?(?:_types|_atomically)?|change_state|get_state"
 )
 """The last parts of names that nodes and plugins add by themselves."""
+_NAMESPACE = re.compile(r"Push\w*Namespace|push[-_]\w+[-_]namespace|__ns\b|\b(?:ns|namespace)\s*=\s*(?![\"']{2})")
 _NAME = re.compile(r"[~/]*\w+(?:/\w+)*")
 
 
@@ -89,11 +93,31 @@ def describe_new_end(
     """
     if reason is None or item.kind not in COMMUNICATION_KINDS or not _NAME.fullmatch(item.name):
         return reason
-    end = _find_end(item, None, new, path)
+    end = _find_certain_end(item, None, new, path)
     if end is not None:
         return _add(reason, item, PurePosixPath(end.path).name)
     is_left = _find_end(old_item, old, new, path) is not None
     return _add(reason, item, None) if is_left and _is_made_nowhere(item.name, new.version, path) else reason
+
+
+def find_given_reason(reason: Phrase, kind: NameKind, names: tuple[str, str], versions: Versions, path: str) -> Phrase:
+    """Return the reason why another name that a file gives to a program is breaking, with the sources at its other end.
+
+    Args:
+        reason: the reason without them.
+        kind: the kind of the name.
+        names: the old and the new name.
+        versions: both versions.
+        path: the path of the file.
+    """
+    old, new = (SourceName(kind, name, "", Span(path, 1, 1, 1, 1)) for name in names)
+    sides = _open_sources(versions.old), _open_sources(versions.new)
+    return describe_new_end(find_left_reason([old], *sides, path) or reason, old, new, *sides, path) or reason
+
+
+@cached_in_review(maxsize=4)
+def _open_sources(version: Version) -> ChangedSources:
+    return ChangedSources(version, ())
 
 
 def is_served(item: SourceName, new: ChangedSources, path: str) -> bool:
@@ -122,9 +146,9 @@ def _add(reason: Phrase, item: SourceName, file: str | None) -> Phrase:
 
 
 def _find_end(item: SourceName, old: ChangedSources | None, new: ChangedSources, path: str) -> OtherEnd | None:
-    """Return the source of the repository with the other end of a name, or None if it is not certain.
+    """Return the source of the repository with the other end of a name, or None if it is unknown.
 
-    Sources of the same package come first. In other packages, the types must be equal, or the name has several parts.
+    In the same package, namespaces and types are ignored.
 
     Args:
         item: the name.
@@ -133,16 +157,22 @@ def _find_end(item: SourceName, old: ChangedSources | None, new: ChangedSources,
         path: the path of the source with the name.
     """
     user = new.find_user(item, path, old)
-    if user is not None:
-        return OtherEnd(user)
+    return _find_certain_end(item, old, new, path) if user is None else OtherEnd(user)
+
+
+def _find_certain_end(item: SourceName, old: ChangedSources | None, new: ChangedSources, path: str) -> OtherEnd | None:
+    """Return the source of any package that certainly has the other end of a name, or None; see `_find_end`.
+
+    The types must be equal, or the name has several parts.
+    """
     kind = get_counterpart(item.kind)
     if kind is None or not _NAME.fullmatch(item.name):
         return None
     is_moved = old is not None and item.kind in _OFFERED_KINDS and any(_list_ends(item, item.kind, new, path))
     for end, other in () if is_moved else _list_ends(item, kind, new, path):
-        before = SourceNames() if old is None else old.find_names(end.path)
-        is_new = before is not None and other.name not in {known.name for known in before.of_kind(kind)}
-        if (old is None or not is_new) and not _is_remapped(new.version, {item.name, other.name}):
+        before = None if old is None else old.find_names(end.path)
+        is_new = before is not None and all(known.name != other.name for known in _list_names(before, kind))
+        if not is_new and not _is_remapped(new.version, {item.name, other.name}):
             return end
     return None
 
@@ -154,13 +184,28 @@ def _list_ends(
     own = {name for name, _, _ in _list_full_names(item, sources.get_names(path), sources.version)}
     last = item.name.rpartition("/")[2].lstrip("~")
     for other_path, names in sources.list_all_sources(f'{last}"', f"{last}'"):
-        for other in names.of_kind(kind) if other_path != path else ():
+        for other in _list_names(names, kind, sources.version) if other_path != path else ():
             is_typed = bool(item.type and other.type)
             if is_typed and not item.has_type_of(other):
                 continue
             for name, controller, file in _list_full_names(other, names, sources.version):
-                if name in own and (is_typed or "/" in name):
+                is_full = item.name.startswith(("/", "~")) and other.name.startswith(("/", "~"))
+                if name in own and (is_typed or "/" in name) and (is_full or not _has_namespaces(sources.version)):
                     yield OtherEnd(other_path, controller, file), other
+
+
+def _list_names(names: SourceNames, kind: NameKind, version: Version | None = None) -> Iterator[SourceName]:
+    """Yield the literal names of a kind, and those that a parameter gives by default.
+
+    With a version, no file of it may set the parameter.
+    """
+    yield from names.of_kind(kind)
+    for item in names.expressions:
+        default = names.find_default(item) if item.kind is kind else None
+        if default is None or SUM in default.parameter:
+            continue
+        if version is None or not is_set_in_repository(version, default.parameter):
+            yield replace(item, name=default.name)
 
 
 def _list_full_names(item: SourceName, names: SourceNames, version: Version) -> Iterator[tuple[str, str, str]]:
@@ -204,6 +249,11 @@ def _keeps_name(version: Version, node: str) -> bool:
     """Return whether launch files certainly do not give a node another name: they name it, or name no node."""
     texts = _read_launch_texts(version)
     return not texts or any(f'"{node}"' in text or f"'{node}'" in text for text in texts)
+
+
+def _has_namespaces(version: Version) -> bool:
+    """Return whether a launch file may give nodes a namespace, so that equal relative names may differ."""
+    return any(map(_NAMESPACE.search, _read_launch_texts(version)))
 
 
 def _is_remapped(version: Version, names: set[str]) -> bool:
