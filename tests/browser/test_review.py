@@ -7,6 +7,9 @@ import sys
 
 import pytest
 
+from linkwright.diagnostics import phrase
+from linkwright.review import Figure, Review, Subject, SubjectKind
+from linkwright.review.reports.html import as_html
 from tests.browser.conftest import wait_until_equal
 from tests.repositories import ARM, PACKAGE, Repository
 
@@ -65,4 +68,20 @@ def test_slider_moves_the_border_between_the_labeled_versions(browser, tmp_path)
     assert clips() == ["inset(0px 100% 0px 0px)", "inset(0px 0px 0px 0%)"]
     slider.press("End")
     assert clips() == ["inset(0px 0% 0px 0px)", "inset(0px 0px 0px 100%)"]
+    page.close()
+
+
+def test_headings_of_quantities_stay_whole_beside_a_long_name(browser, tmp_path):
+    arguments = " ".join(f"argument_{number}:=value_{number}" for number in range(12))
+    figures = [Figure(phrase("links"), "12", "13", arguments=f"with {arguments}")]
+    subject = Subject(SubjectKind.DESCRIPTION, "arm.urdf", "arm.urdf", "arm.urdf", figures=figures)
+    path = tmp_path / "review.html"
+    path.write_text(as_html(Review("main", "topic", [subject])), encoding="utf-8")
+    page = browser.new_page(viewport={"width": 1000, "height": 900})
+    page.goto(path.as_uri())
+    lines = page.locator("th").evaluate_all(
+        "(cells) => cells.map((cell) => { const text = document.createRange();"
+        " text.selectNodeContents(cell); return text.getClientRects().length; })"
+    )
+    assert lines == [1, 1, 1, 1]
     page.close()

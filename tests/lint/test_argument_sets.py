@@ -73,6 +73,14 @@ def test_failure_without_arguments_is_one_info(check):
     assert findings[0]["notes"][0]["file"].endswith("view.launch.py")
 
 
+def test_a_missing_package_makes_no_argument_a_needed_one(check):
+    robot = ARM.replace("$(arg type).xacro", "$(find tool)/tool.xacro")
+    launch = LAUNCH.format(kinds="'small'")
+    findings = check({"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch})
+    (message,) = [finding["message"] for finding in findings if finding["code"] == "LINT303"]
+    assert message == "'arm.urdf.xacro' needs the argument 'name'"
+
+
 def test_defaults_that_fail_where_they_are_used_are_told_with_the_error(check):
     robot = f"""<robot {XACRO} name="r"><xacro:arg name="kind" default="old"/>
     <xacro:include filename="$(arg kind).xacro"/></robot>"""

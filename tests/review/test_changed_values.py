@@ -95,6 +95,7 @@ def review_lines(repository, compare):
         ("0.30", "0.25", "values in Rover.drive: arm.add_tool(z_offset=0.30 -> 0.25, ...)"),
         ("'drill'", "'gripper'", "values in Rover.drive: arm.add_tool(z_offset=0.30, name='drill' -> 'gripper')"),
         ("sleep(1.5)", "sleep(2)", "values in Rover.drive: time.sleep(1.5 -> 2)"),
+        ("sleep(1.5)", "sleep(limit(step))", "values in Rover.drive: time.sleep(1.5) -> time.sleep(limit(step))"),
         (
             "name='drill'",
             "name=arm.name",

@@ -107,6 +107,22 @@ def test_functions_of_python_with_other_code_are_named(review_lines, old, new, e
 
 
 @pytest.mark.parametrize(
+    ("imports", "expected"),
+    [
+        ("from arm.tool import open, close\n", []),
+        ("from arm.tool import open\nfrom arm.tool import close\n", []),
+        (
+            "from arm.tool import open, lift, turn\n",
+            ["imports added: 'from arm.tool import lift, turn'; imports removed: 'from arm.tool import close'"],
+        ),
+    ],
+)
+def test_imports_are_compared_name_by_name(review_lines, imports, expected):
+    old = f"from arm.tool import close, open\n{PYTHON}"
+    assert review_lines("arm/scripts/driver.py", old, f"{imports}{PYTHON}") == expected
+
+
+@pytest.mark.parametrize(
     ("old", "new"),
     [
         ('info("mode")', 'info("the mode")'),

@@ -212,7 +212,7 @@ base_argument = make("base")
     [
         (MODULE, "from arm.common import base_argument", []),
         (MODULE, "from arm.common import mode_argument as base_argument",
-         ["argument 'mode' added: choices [fast, slow]"]),
+         ["argument 'mode' added: choices [fast, slow] (required)"]),
         (FUNCTION, "from arm.common import base_argument", []),
         ("", "from elsewhere.common import base_argument", []),
     ],

@@ -206,3 +206,13 @@ def test_the_text_of_a_path_object_is_the_path(review_changes, text):
         "    return LaunchDescription([IncludeLaunchDescription(path)])\n"
     )
     assert review_changes("a.launch.py", launch, "Description(path)", f"Description({text})") == ([], [])
+
+
+@pytest.mark.parametrize(("root", "is_told"), [("launch", True), ("launchConfiguration", False)])
+def test_the_root_element_tells_whether_a_file_is_a_launch_file(repository, compare, root, is_told):
+    path = "arm/board/debug.launch"
+    repository.commit(FILES)
+    repository.write({path: f'<?xml version="1.0"?>\n<!-- debug -->\n<{root} type="debug"></{root}>\n'})
+    result = compare(repository)
+    assert [found.path for found in result.subjects] == ([path] if is_told else [])
+    assert list(result.other_files) == ([] if is_told else [path])

@@ -232,22 +232,23 @@ class SetCheck:
         The arguments are found by leaving out each argument in turn.
         """
         needed_values = dict(values)
+        known_errors = common | self._find_errors(values)  # such as a missing package, whose parts are left out
         for name in values:
             fewer_values = {other_name: value for other_name, value in needed_values.items() if other_name != name}
-            if self._expands(fewer_values, common):
+            if self._find_errors(fewer_values) <= known_errors:
                 needed_values = fewer_values
         return list(needed_values)
 
-    def _expands(self, values: Mapping[str, str], common: frozenset[Key]) -> bool:
+    def _find_errors(self, values: Mapping[str, str]) -> frozenset[Key]:
+        """Return the keys of the errors with which a description is expanded and read."""
         try:
             diagnostics = examine_description(
                 self.path, arguments=values, packages=self.finder, xacro=self._should_expand, partly=True
             ).diagnostics
         except LinkwrightError as error:
             diagnostics = error.diagnostics
-        return all(
-            diagnostic.severity is not Severity.ERROR or _finding_key(diagnostic) in common
-            for diagnostic in diagnostics
+        return frozenset(
+            _finding_key(diagnostic) for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR
         )
 
     def _result_for_unknown_values(

@@ -12,6 +12,7 @@ from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
 _LAUNCH_ROOT_TAG = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
+_OTHER_ROOT_TAG = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<(?!launch[\s>])[A-Za-z]")
 _LAUNCH_FUNCTION = re.compile(rb"^def generate_launch_description\b|^def generate_test_description\b", re.MULTILINE)
 LAUNCH_TEMPLATE_SUFFIXES = (".em", ".j2", ".jinja")
 """The ends of the names of templates from which a program makes launch files."""
@@ -37,6 +38,14 @@ def is_launch_xml(file: Path) -> bool:
     except (OSError, LinkwrightError):
         return False
     return is_launch
+
+
+def is_other_launch(file: Path) -> bool:
+    """Return whether a file with the name of a launch file is XML of another program, such as Eclipse."""
+    try:
+        return file.suffix == ".launch" and _OTHER_ROOT_TAG.match(file.read_bytes()) is not None
+    except OSError:
+        return False
 
 
 def is_launch_yaml(file: Path) -> bool:

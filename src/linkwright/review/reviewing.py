@@ -65,6 +65,7 @@ from linkwright.review.launch_paths import (
     contains_actions,
     is_launch_xml,
     is_launch_yaml,
+    is_other_launch,
 )
 from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.programs.missing import drop_told_findings
@@ -389,27 +390,28 @@ class _Reviewer:
         path = new_path or old_path or ""
         rule = find_rule(path)
         sides = ((self._versions.old, old_path), (self._versions.new, new_path))
+        files = [version.file(name) for version, name in sides if name]
         if rule is not None and rule.kind is SubjectKind.LAUNCH_FILE and path.endswith((".yaml", ".yml")):
-            rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
+            rule = rule if any(is_launch_yaml(file) for file in files) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             if all(is_repository_list(version.text(name)) for version, name in sides if name):
                 return REPOSITORIES
-            return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
-        if rule is not None and all(is_other_world(version.file(name)) for version, name in sides if name):
+            return MAP if any(is_map(file) for file in files) else rule
+        if rule is not None and all(is_other_world(file) or is_other_launch(file) for file in files):
             return None
         if rule is None and path.endswith(LAUNCH_TEMPLATE_SUFFIXES):
-            is_launch = all(is_launch_xml(version.file(name)) for version, name in sides if name)
+            is_launch = all(is_launch_xml(file) for file in files)
             return LAUNCH_FILE if is_launch else None
-        if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
+        if rule is None and any(is_launch_xml(file) for file in files):
             return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
-        if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
+        if rule is None and any(is_tree_file(file) for file in files):
             return BEHAVIOR_TREE
-        if rule is None and any(is_gui_file(version.file(name)) for version, name in sides if name):
+        if rule is None and any(is_gui_file(file) for file in files):
             return GUI
         if rule is None and may_help_launch_files(path):
             if any(contains_actions(version, name) for version, name in sides if name):
                 return LAUNCH_FILE
-            is_helper = any(imports_actions(version.file(path)) for version, path in sides if path)
+            is_helper = any(imports_actions(file) for file in files)
             return LAUNCH_HELPER if is_helper else None
         return rule
 

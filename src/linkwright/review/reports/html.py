@@ -55,6 +55,7 @@ section { background: var(--card); border: 1px solid var(--line); border-radius:
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 8px 0; }
 th, td { padding: 3px 12px 3px 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
+th, td:not(:first-child) { overflow-wrap: break-word; }
 ul { margin: 8px 0 4px; padding-left: 20px; } li { margin: 2px 0; } summary { cursor: pointer; }
 .images { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 12px; margin: 12px 0; }
 figure { margin: 0; } figcaption { color: var(--soft); }

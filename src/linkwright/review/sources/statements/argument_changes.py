@@ -61,7 +61,7 @@ def find_argument_difference(old: Statement, new: Statement) -> Iterator[Differe
         for statement, call, pairs in zip((old, new), calls, brackets, strict=True)
     )
     token, old_value, new_value = new.tokens[opening], *map(_format_value, changed)
-    if all(changed):
+    if all(changed) and not any("(" in items[start] for items in arguments):  # with calls in it, it is hard to read
         left = [text if len(text) <= _MAX_LEFT_CHARACTERS else "..." for text in arguments[1][:start]]
         items = [*left, f"{arguments[0][start]} -> {arguments[1][start]}", *(["..."] if end else [])]
         yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", old_value, new_value, token)

@@ -59,7 +59,7 @@ class Code:
     Attributes:
         functions: the statements of each function, by qualified name. The first statement is the head.
         outside: the statements outside of functions by class; statements outside of classes have an empty name.
-        imports: the imports of a Python source.
+        imports: the imports of a Python source, one for each name.
     """
 
     functions: dict[str, list[Part]] = field(default_factory=dict)
@@ -78,8 +78,8 @@ def read_code(source: SourceText) -> Code:
             return _read_cpp(source)
         code = Code()
         tree = parse_source(source).tree
-        imports = (node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
-        code.imports = [_make_python_part(node, "") for node in imports]
+        imports = [node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom))]
+        code.imports = [_make_import_part(node, alias) for node in imports for alias in node.names]
         _read_python(tree.body, "", code)
     except (ValueError, SyntaxError, RecursionError):
         return Code()
@@ -119,6 +119,13 @@ def _make_python_part(node: ast.stmt, indent: str) -> Part:
     first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
     last = inner[0][0].lineno - 1 if inner else node.end_lineno or node.lineno
     return Part(indent + ast.unparse(_normalize(node)), first, max(first, last))
+
+
+def _make_import_part(node: ast.Import | ast.ImportFrom, alias: ast.alias) -> Part:
+    """Return the import of one of the names of a statement."""
+    names = [alias]
+    single = ast.Import(names) if isinstance(node, ast.Import) else ast.ImportFrom(node.module, names, node.level)
+    return Part(ast.unparse(single), node.lineno, node.end_lineno or node.lineno)
 
 
 def _normalize(node: ast.stmt) -> ast.stmt:

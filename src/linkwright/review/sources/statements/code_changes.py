@@ -250,10 +250,22 @@ def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | N
     added = [part for part in new if part.text not in before]
     texts = []
     if added:
-        texts.append(phrase("imports added: {imports}", imports=_join_names(f"'{part.text}'" for part in added)))
+        texts.append(phrase("imports added: {imports}", imports=_join_imports(added)))
     if removed:
-        texts.append(phrase("imports removed: {imports}", imports=_join_names(f"'{part.text}'" for part in removed)))
+        texts.append(phrase("imports removed: {imports}", imports=_join_imports(removed)))
     return CodeChange(joined(texts, "; "), (added or removed)[0].first_line, is_old=not added) if texts else None
+
+
+def _join_imports(parts: Sequence[Part]) -> Phrase:
+    """Return imports of single names, in which the names of one module are one import."""
+    groups: dict[str, list[str]] = {}
+    for part in parts:
+        module, _, name = part.text.rpartition(" import ")
+        groups.setdefault(module or part.text, []).append(name)
+    return _join_names(
+        f"'{module} import {', '.join(names)}'" if module.startswith("from ") else f"'{module}'"
+        for module, names in groups.items()
+    )
 
 
 def _find_class_line(code: Code, name: str) -> int:
