@@ -44,6 +44,15 @@ def test_a_variable_in_a_name_is_a_sum(repository, compare, old, new, expected):
     assert [line for line in lines if "publisher" in line] == expected
 
 
+@pytest.mark.parametrize("line", ["base = ns_ + base;", 'base = other + "/x"; other = base + "/y";'])
+def test_a_variable_in_its_own_sum_is_unknown(repository, compare, line):
+    source = SOURCE.replace('  const auto base = camera + "/rgb";\n', f"  {line}\n")
+    repository.commit({**MANIFEST, PATH: source})
+    repository.write({PATH: source.replace('"/info"', '"/infos"')})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == INFO + "'<camera>/rgb/infos' (Info)"
+
+
 def test_a_member_that_is_set_twice_is_unknown(repository, compare):
     source = SOURCE.replace('  base_ = camera + "/rgb";\n', '  base_ = camera + "/rgb";\n  base_ = compute();\n')
     repository.commit({**MANIFEST, PATH: source})

@@ -90,8 +90,8 @@ def _rank_pairs(
     for old_path, old_group, old_contents in removed:
         for new_path, new_group, new_contents in added:
             old_name, new_name = (PurePosixPath(path).name.partition(".")[0] for path in (old_path, new_path))
-            words = (_SEPARATOR.sub("", name).casefold() for name in (old_name, new_name))
-            similarity = SequenceMatcher(None, *words, autojunk=False).ratio()
+            old_word, new_word = (_SEPARATOR.sub("", name).casefold() for name in (old_name, new_name))
+            similarity = SequenceMatcher(None, old_word, new_word, autojunk=False).ratio()
             has_words_of_other = _have_common_words(old_name, new_name)
             is_close = old_group == new_group and (similarity >= _MIN_NAME_SIMILARITY or has_words_of_other)
             if is_close and are_alike(old_contents, new_contents):

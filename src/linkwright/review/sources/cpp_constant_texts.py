@@ -93,8 +93,10 @@ class ConstantTexts:
             position: its offset.
             depth: the number of sums around it.
         """
+        if depth > _MAX_DEPTH:
+            return expression
         parts = [self._expand_part(part, position, depth) for part in split_sum(expression)]
-        return _BETWEEN_TEXTS.sub("", " + ".join(parts)) if depth < _MAX_DEPTH else expression
+        return _BETWEEN_TEXTS.sub("", " + ".join(parts))
 
     def _expand_part(self, part: str, position: int, depth: int) -> str:
         returned = self._functions.find_returned(part)
@@ -105,7 +107,9 @@ class ConstantTexts:
             return part
         assigned = find_assigned_expression(self._text, variable["name"], position)
         found = find_member_expression(self._text, variable["name"]) if assigned is None else (assigned, position)
-        expanded = part if found is None else self.expand(*found, depth + 1)
+        if found is None or re.search(rf"\b{variable['name']}\b", found[0]):
+            return part  # unknown, or set to a sum with its old value
+        expanded = self.expand(*found, depth + 1)
         return expanded if is_sum_of_texts(expanded) else part
 
     def _is_node_name(self, variable: str) -> bool:

@@ -76,8 +76,9 @@ def _list_items(tree: ast.AST, source: ast.expr, resolve: Callable[[ast.expr], a
         keys = [key for key in value.keys if key is not None]
         if len(keys) < len(value.values):
             return ()
-        pairs = [ast.Tuple([key, item], ast.Load()) for key, item in zip(keys, value.values, strict=True)]
-        return {"items": pairs, "keys": keys, "values": value.values}[method]
+        if method == "items":
+            return [ast.Tuple([key, item], ast.Load()) for key, item in zip(keys, value.values, strict=True)]
+        return keys if method == "keys" else value.values
     return value.elts if isinstance(value, (ast.List, ast.Tuple)) and not is_call else ()
 
 
