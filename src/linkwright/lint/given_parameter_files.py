@@ -102,7 +102,7 @@ def _clean(name: str | None) -> str | None:
 def read_sections(file: Path) -> list[str] | None:
     """Return the last parts of the names of the nodes for which a parameter file has sections.
 
-    The result is None if the file cannot be read, if it has a section for any node, or a part that does not set parameters.
+    The result is None if the file cannot be read, if it has a section for any node, or a part without parameters.
     """
     import yaml
 
@@ -117,7 +117,7 @@ def read_sections(file: Path) -> list[str] | None:
 
 
 def _list_sections(content: object, name: str) -> Iterator[str]:
-    """Yield the last parts of the names of nodes, and an empty text for a part that does not set parameters."""
+    """Yield the last parts of the names of nodes, and an empty text for a part without parameters."""
     if not isinstance(content, dict) or not content:
         yield ""
     elif "ros__parameters" in content:
