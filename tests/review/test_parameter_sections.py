@@ -240,3 +240,19 @@ def test_plugins_topics_and_frames_of_a_long_added_file_come_first(repository, c
     first = "plugins [walls], walls.plugin a/Walls, walls.scan_topic /scan, global_frame map, size_0 1"
     assert line.startswith(f"parameter file added: parameters of map ({first}, ")
     assert "size_23 24 and 16 more)" in line  # the other nodes have one value each
+
+
+@pytest.mark.parametrize(
+    ("section", "reason"),
+    [
+        ("/**", "the nodes that load the file start without these parameters"),
+        ("lamp", "the node 'lamp' starts without these parameters"),
+    ],
+)
+def test_section_for_any_node_is_not_called_a_node(repository, compare, section, reason):
+    text = "other:\n  ros__parameters:\n    port: 1\n"
+    lamp = f"{section}:\n  ros__parameters:\n    rate: 10\n    gain: 2.0\n"
+    repository.commit({"p/package.xml": PACKAGE_XML, "p/config/a.yaml": text + lamp})
+    repository.write({"p/config/a.yaml": text})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == reason

@@ -46,6 +46,7 @@ from linkwright.review.files.parameters.plugin_packages import PluginPackages
 from linkwright.review.files.parameters.rearranged_nodes import arrange_like
 from linkwright.review.files.parameters.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.parameters.renamed_values import join_renamed_values
+from linkwright.review.files.parameters.repeated_keys import report_repeated_keys
 from linkwright.review.files.parameters.replaced_classes import join_replaced_classes
 from linkwright.review.files.parameters.unpublished_topics import find_unpublished_reason
 from linkwright.review.files.parameters.value_changes import ValueChange, merge_values
@@ -108,6 +109,7 @@ def compare_parameter_files(
     if roots is None:
         return
     old, new = roots
+    report_repeated_keys(pair, old, new)
     if old is not None and new is not None:
         if is_parameter_description(old) and is_parameter_description(new):
             compare_generated_parameters(pair, old, new)

@@ -207,7 +207,7 @@ class NameRules:
                 return None
             if self._readers.is_package_without_node(node["node"]):
                 return None
-            return phrase("the node '{name}' starts without these parameters", name=node["node"])
+            return _make_lost_parameters_reason(node["node"])
         lost = _find_name_items(old) - self._find_plugins(parameter) if _PLUGIN_LIST.search(parameter) else set[str]()
         if lost:
             return _make_plugin_reason(parameter, lost)
@@ -482,7 +482,7 @@ class RenamingRules:
             return self._find_node_reason(part, new_part)
         if new_node is not None and matches_node(new_node, node):
             return phrase("values that are set under the old names no longer have an effect")
-        return phrase("the node '{name}' starts without these parameters", name=node)
+        return _make_lost_parameters_reason(node)
 
     def _find_node_reason(self, part: str, new_part: str) -> Phrase | None:
         """Return the reason why renaming or moving node parameters is breaking.

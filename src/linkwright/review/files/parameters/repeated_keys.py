@@ -1,0 +1,46 @@
+"""Report keys that a YAML file newly repeats in a mapping."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import yaml
+
+from linkwright.diagnostics import phrase
+from linkwright.review.changes import Change, Location
+from linkwright.review.file_pair import FilePair
+
+
+def report_repeated_keys(pair: FilePair, old: yaml.Node | None, new: yaml.Node | None) -> None:
+    """Report the keys that only the new version repeats; programs read the last value, and no error is shown.
+
+    Args:
+        pair: both versions of the file.
+        old: the root node of the old version.
+        new: the root node of the new version.
+    """
+    known = {path for path, _ in _list_repeated(old, "", frozenset())}
+    for path, key in _list_repeated(new, "", frozenset()):
+        if path not in known:
+            mark = key.start_mark
+            text = phrase("key '{name}' is repeated in its mapping; only the last value counts", name=path)
+            pair.changes.append(Change(text, location=Location(pair.new_path, mark.line + 1, mark.column + 1)))
+
+
+def _list_repeated(node: yaml.Node | None, path: str, parents: frozenset[int]) -> Iterator[tuple[str, yaml.Node]]:
+    """Yield the paths of repeated keys, with the last key of each."""
+    if node is None or id(node) in parents:
+        return
+    parents |= {id(node)}
+    if isinstance(node, yaml.SequenceNode):
+        for number, item in enumerate(node.value):
+            yield from _list_repeated(item, f"{path}[{number}]", parents)
+    elif isinstance(node, yaml.MappingNode):
+        last = {key.value: key for key, _ in node.value if isinstance(key, yaml.ScalarNode) and key.value != "<<"}
+        counts = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
+        for name, key in last.items():
+            inner = f"{path}.{name}" if path else str(name)
+            if counts.count(name) > 1:
+                yield inner, key
+        for key, value in node.value:
+            yield from _list_repeated(value, f"{path}.{key.value}" if path else str(key.value), parents)

@@ -1,0 +1,26 @@
+"""Keys that a YAML file repeats in a mapping."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import subject
+
+PATH = "p/config/lamp.yaml"
+LINE = "key 'lamp.bulb' is repeated in its mapping; only the last value counts"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_told"),
+    [
+        ("lamp:\n  bulb: {w: 1}\n", "lamp:\n  bulb: {w: 1}\n  bulb: {w: 2}\n", True),
+        ("lamp:\n  bulb: 1\n  bulb: 2\n", "lamp:\n  bulb: 1\n  bulb: 3\n", False),
+        ("lamp:\n  bulb: 1\n", "lamp:\n  bulb: 1\nother:\n  bulb: 2\n", False),
+    ],
+)
+def test_a_key_that_only_the_new_version_repeats_is_told(repository, compare, old, new, is_told):
+    repository.commit({"p/package.xml": PACKAGE_XML, PATH: old})
+    repository.write({PATH: new})
+    lines = subject(compare(repository), PATH).changes
+    assert [change.location.line for change in lines if str(change.sentence) == LINE] == ([3] if is_told else [])
