@@ -84,6 +84,7 @@ from linkwright.review.sources.statements.function_changes import (
 )
 from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
+from linkwright.review.sources.unbuilt_sources import is_unbuilt
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.versions import Versions
 
@@ -341,9 +342,12 @@ class _SourcePair(PairedNames):
         return all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path)
 
     def _was_not_installed(self) -> bool:
-        """Return whether the old version built the source only into programs that it did not install."""
-        path = self.file.old_path
-        return path is not None and is_in_uninstalled_program(self.old.version, self.old.find_package(path), path)
+        """Return whether the old version built the source only into programs that it did not install, or not at all."""
+        path, version = self.file.old_path, self.old.version
+        package = None if path is None else self.old.find_package(path)
+        if path is None or package is None:
+            return False
+        return is_in_uninstalled_program(version, package, path) or is_unbuilt(version, package, path)
 
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
