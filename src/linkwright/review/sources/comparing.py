@@ -190,8 +190,8 @@ class _SourcePair(PairedNames):
             or is_new_in_plugin(item, self.old, self.new, (old_path, path))
         ]
         kept = [item for item in only_old.values() if item not in removed]
-        for text, item in find_moved_names(kept, self.old, self.new, self.file):
-            yield self.make_change(text, item.span, self.old, None)
+        for text, item, reason in find_moved_names(kept, self.old, self.new, self.file):
+            yield self.make_change(text, item.span, self.old, reason)
         removed = [i for i in removed if i.name not in new_names.passed_on and not new_names.has_default(i)]
         added = [i for i in added if i.name not in old_names.passed_on and not old_names.has_default(i)]
         removed, added = self.select_reported(kind, removed, added, old_names, new_names)
