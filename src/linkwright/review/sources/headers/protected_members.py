@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import phrase
-from linkwright.review.sources.details import accepts_all, format_names, format_overload_change, is_convertible
+from linkwright.review.sources.cpp.types import is_convertible
+from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.namespaces import HeaderChange
 
