@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import PurePosixPath
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import is_exported_header, read_package_facts
 from linkwright.review.sources.cpp.text import blank_comments
@@ -28,6 +29,7 @@ _OTHER_TOOLS = (
 """The names, and the ends of names, of files with which other tools than CMake build the sources beside and below."""
 
 
+@cached_in_review(maxsize=256)
 def is_unbuilt(version: Version, package: str, path: str) -> bool:
     """Return whether no target builds a source, as far as the build files tell.
 
