@@ -93,6 +93,26 @@ def test_a_program_with_a_window_that_no_longer_starts_by_default_is_told(review
     assert found_breaking == []
 
 
+@pytest.mark.parametrize(("default", "is_breaking"), [("", True), ("10.0.0.2", False)])
+def test_a_node_that_starts_only_with_an_argument_that_is_empty_by_default(review_changes, default, is_breaking):
+    text = f"""from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, NotEqualsSubstitution
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("ip", default_value="{default}"),
+        Node(package="arm", executable="arm"),
+    ])
+"""
+    condition = 'executable="arm", condition=IfCondition(NotEqualsSubstitution(LaunchConfiguration("ip"), ""))'
+    _, found_breaking = review_changes("arm.launch.py", text, 'executable="arm"', condition)
+    assert found_breaking == ["node 'arm/arm': condition if $(var ip) != '' added"] * is_breaking
+
+
 @pytest.mark.parametrize(
     ("default", "other", "is_told"),
     [("false", "", True), ("true", "", False), ("false", '<node pkg="arm" exec="arm" unless="$(var queue)"/>', False)],

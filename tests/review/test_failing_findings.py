@@ -54,6 +54,15 @@ def test_installed_folder_that_does_not_exist_is_breaking(package, compare, is_a
     assert "LW824" not in finding_codes(result.new_findings)
 
 
+def test_installed_folder_outside_of_the_repository_may_exist(package, compare):
+    package.commit({BUILD: CMAKE.format(folders="urdf")})
+    package.write({BUILD: CMAKE.format(folders="urdf ../../tools/include ../tools/include")})
+    result = compare(package)
+    reasons = list(list_reasons(result, BUILD).values())
+    assert reasons == ["the build fails, because '../tools/include' does not exist"]
+    assert "LW824" not in finding_codes(result.new_findings)
+
+
 @pytest.mark.parametrize("was_refused", [False, True])
 def test_description_that_urdfdom_refuses_is_one_breaking_change(package, compare, was_refused):
     inertia = '<inertia ixx="{}" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'

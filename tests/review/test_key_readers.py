@@ -177,3 +177,21 @@ def test_a_removed_section_with_the_name_of_a_package_needs_a_node_of_that_name(
     repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: f"leg:\n  rate: 1\n{NODE}", **sources})
     repository.write({PATH: "leg:\n  rate: 1\n"})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ('declare_parameter("arm_rates.x", 1.0);', []),
+        ('declare_parameter(name + "_rates.x", 1.0);', []),
+        ('declare_parameter(name + "_rate.x", 1.0);', ["/**.ros__parameters.arm_rates.x 1.0 removed"]),
+    ],
+)
+def test_a_file_that_loses_all_parameters_of_its_nodes(repository, compare, source, expected):
+    text = "/**:\n  ros__parameters:\n    {}\n"
+    files = {"a/package.xml": FILES["a/package.xml"], "a/src/arm.cpp": f"void start() {{ {source} }}\n"}
+    repository.commit({**files, PATH: text.format("arm_rates:\n      x: 1.0")})
+    repository.write({"a/src/arm.cpp": "void start() {}\n", PATH: text.format("")})
+    found = [(str(change.sentence), str(change.reason)) for _, change in compare(repository).breaking_changes]
+    reason = "the nodes that load the file start without these parameters"
+    assert [line for line, own_reason in found if own_reason == reason] == expected

@@ -488,3 +488,16 @@ def test_environment_variable_for_another_setting_is_not_renamed(review_changes_
     changes = review_changes_with_reasons(new.replace('executable="hand"', 'executable="hand", name=NAME'), old=LIMITS)
     assert "use of environment variable 'LEFT_UPPER' removed" in changes
     assert "use of environment variable 'ARM_NAME' added" in changes
+
+
+@pytest.mark.parametrize("name", ["arm.launch", "arm.launch.xml"])
+def test_removed_argument_that_a_file_of_ros2_still_uses_makes_it_fail(repository, compare, name):
+    text = """<launch>
+      <arg name="namespace" default="arm"/>
+      <push-ros-namespace namespace="$(var namespace)"/>
+      <node pkg="arm" exec="arm"/>
+    </launch>"""
+    repository.commit({f"arm/launch/{name}": text})
+    repository.write({f"arm/launch/{name}": text.replace('arg name="namespace"', 'arg name="robot"')})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "the launch file still uses 'namespace', and fails if no other file declares it"

@@ -1,4 +1,4 @@
-"""Topics and services that move from one node of a package to another one."""
+"""Topics, services and parameters that move from one node of a package to another one."""
 
 from __future__ import annotations
 
@@ -64,3 +64,34 @@ def test_topics_that_move_to_an_added_node_are_told(find_lines):
 def test_topics_of_modules_and_of_other_nodes_do_not_move(find_lines, old, new):
     lines, _ = find_lines(old, new)
     assert not any("moved to" in line for line in lines)
+
+
+PLANNER = """class {name} : public rclcpp::Node {{
+ public:
+  {name}() : Node("{node}") {{ {code} }}
+}};
+"""
+SPEED = 'speed_ = declare_parameter("speed", 0.5);'
+
+
+@pytest.mark.parametrize(
+    ("node", "name", "is_breaking"),
+    [("planner", "driver", True), ("driver", "driver", False), ("planner", "other", False)],
+)
+def test_parameters_that_move_to_a_new_node_are_breaking(repository, compare, node, name, is_breaking):
+    source = PLANNER.format(name="Driver", node="driver", code=SPEED + " start();")
+    repository.commit({**MANIFEST, "arm/src/driver.cpp": source})
+    repository.write(
+        {
+            "arm/src/driver.cpp": PLANNER.format(name="Driver", node=name, code="start();"),
+            "arm/src/planner.cpp": PLANNER.format(name="Planner", node=node, code=SPEED),
+        }
+    )
+    reasons = {str(change.sentence): str(change.reason) for _, change in compare(repository).breaking_changes}
+    found = {line: reason for line, reason in reasons.items() if "parameter" in line}
+    expected = {
+        "parameter moved to 'arm/src/planner.cpp': 'speed' (0.5)": (
+            "values that parameter files give to the old node have no effect"
+        )
+    }
+    assert found == (expected if is_breaking else {})

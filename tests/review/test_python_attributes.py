@@ -1,4 +1,4 @@
-"""The lines of a review about annotated attributes of Python classes, and about data classes."""
+"""The lines of a review about declared attributes of Python classes, and about data classes."""
 
 from __future__ import annotations
 
@@ -46,6 +46,23 @@ def test_an_attribute_that_a_module_of_the_package_reads_belongs_to_the_class(re
     assert breaking(result) == [REMOVED]
     (change,) = [change for _, change in result.breaking_changes]
     assert str(change.reason) == "programs that set or read 'Arm.speed' fail"
+
+
+@pytest.mark.parametrize("decorator", ["property", "cached_property", "functools.cached_property"])
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("    def speed(self):\n        return 2\n", "public member 'Arm.speed' renamed to 'Arm.speeds'"),
+        ("    def __init__(self):\n        self.speeds = 2\n", REMOVED),
+        ("    def __init__(self):\n        self.speed = 2\n", None),
+    ],
+)
+def test_a_removed_property_is_breaking(repository, compare, decorator, new, expected):
+    text = f"class Arm:\n    @{decorator}\n    def _a(self):\n        return 1\n\n    @{decorator}\n"
+    new_text = new.replace("def speed(", "def speeds(")
+    new_text = (text + new_text) if "speeds(" in new_text else text.rpartition("    @")[0] + new_text
+    result = review_module(repository, compare, text + "    def speed(self):\n        return 2\n", new_text)
+    assert breaking(result) == ([] if expected is None else [expected])
 
 
 @pytest.mark.parametrize("new", ["self.speed = 2", "self.speed: int = 2"])

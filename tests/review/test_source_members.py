@@ -292,6 +292,8 @@ CALLS = "classes that derive from the class and call or define 'Arm::move' do no
     ("old", "new", "expected", "reason"),
     [
         ("int count", "double count", "protected member 'Arm::count': type int -> double", None),
+        ("int count", "Pose count", "protected member 'Arm::count': type int -> Pose",
+         "classes that derive from the class and use it as 'int' do not build"),
         ("void move(double speed)", "void move(int steps)", "protected function 'Arm::move': (double) -> (int)", CALLS),
         ("void move(double speed)", "void move(double speed, int n = 1)",
          "protected function 'Arm::move': (double) -> (double, int = ...)", None),
@@ -420,3 +422,12 @@ def test_removed_parameter_of_another_node_breaks_nobody(repository, compare, na
     (found,) = compare(repository).subjects
     change = next(change for change in found.changes if name in str(change.sentence))
     assert (change.reason is not None) is is_breaking
+
+
+@pytest.mark.parametrize("head", ["struct ALIGN_16 Point", "class ARM_PUBLIC Point final", "struct Point"])
+def test_a_macro_before_the_name_of_a_class_hides_no_members(repository, compare, head):
+    path = "arm/include/arm/arm.hpp"
+    text = f"#pragma once\n{head} {{\npublic:\n  int count;\n  static int size();\n}};\n"
+    repository.commit({**HEADER_PACKAGE, path: text})
+    repository.write({path: text.replace("  static int size();\n", "")})
+    assert breaking(compare(repository)) == ["functions removed: 'Point::size'"]

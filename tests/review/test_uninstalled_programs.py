@@ -49,3 +49,26 @@ def test_names_of_a_program_that_nothing_installs_break_nobody(
     )
     repository.write({"arm/src/drive.cpp": NODE.format("level")})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("build", "is_breaking"),
+    [
+        ("# add_executable(drive src/drive.cpp)", False),
+        ("", False),
+        ("add_executable(drive src/drive.cpp)\ninstall(TARGETS drive DESTINATION lib/arm)", True),
+        ("add_executable(drive ${SOURCES})\ninstall(TARGETS drive DESTINATION lib/arm)", True),
+    ],
+)
+def test_names_of_a_program_that_nothing_built_break_nobody(repository, compare, build, is_breaking):
+    text = "project(arm)\nfind_package(ament_cmake REQUIRED)\nadd_executable(lift src/lift.cpp)\n{}\nament_package()\n"
+    repository.commit(
+        {
+            "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+            "arm/CMakeLists.txt": text.format(build),
+            "arm/src/drive.cpp": NODE.format("speed"),
+            "arm/src/lift.cpp": "int main() { return 0; }\n",
+        }
+    )
+    repository.write({"arm/src/drive.cpp": NODE.format("velocity")})
+    assert bool(breaking(compare(repository))) is is_breaking

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
@@ -28,9 +29,10 @@ def mark_failures(
 ) -> tuple[list[Subject], list[Diagnostic]]:
     """Return the subjects with breaking changes for findings that break a file, and the other findings.
 
-    A line that already names the missing file becomes breaking. A finding of a file whose old version had one of the
-    same kind is left out, and so are errors of descriptions if the package had any. Only the first error of a
-    description becomes breaking, unless a line tells that it can no longer be read.
+    A line that already names the missing file becomes breaking. Files outside of the repository may exist, so that
+    their findings are left out. A finding of a file whose old version had one of the same kind is left out, and so are
+    errors of descriptions if the package had any. Only the first error of a description becomes breaking, unless a line
+    tells that it can no longer be read.
 
     Args:
         versions: both versions.
@@ -52,6 +54,8 @@ def mark_failures(
     result = {subject.path: subject for subject in subjects}
     others = []
     for finding in findings:
+        if _is_outside(finding):
+            continue
         path = "" if finding.span is None else finding.span.file
         reason, old_path = _find_reason(finding), old_paths.get(path, path)
         is_first = not {(finding.code, path), (finding.code, old_path)} & broken_before
@@ -92,6 +96,14 @@ def _find_reason(finding: Diagnostic) -> Phrase | None:
         return None
     name = next(iter(finding.message.arguments.values()), "")
     return phrase("the build fails, because '{name}' does not exist", name=name)
+
+
+def _is_outside(finding: Diagnostic) -> bool:
+    """Return whether a build file installs a file outside of the repository, as in ``../other``. It may exist."""
+    if finding.code not in _UNBUILDABLE_CODES or finding.span is None:
+        return False
+    name = str(next(iter(finding.message.arguments.values()), ""))
+    return posixpath.normpath(posixpath.join(posixpath.dirname(finding.span.file), name)).startswith("..")
 
 
 def _names_same_file(finding: Diagnostic, change: Change) -> bool:

@@ -41,12 +41,12 @@ def _evaluate_part(part: str) -> bool | None:
     keyword, _, text = part.partition(" ")
     if keyword == "after":
         return True  # the delay of a timer
-    value = _evaluate_text(text.strip())
+    value = _evaluate_text(text)
     return value if value is None or keyword == "if" else not value
 
 
 def _evaluate_text(text: str) -> bool | None:
-    evaluation = _EVAL_SUBSTITUTION.fullmatch(text)
+    evaluation = _EVAL_SUBSTITUTION.fullmatch(text.strip())
     text = text if evaluation is None else _strip_quotes(evaluation[1].strip())
     if "$(" in text or "`" in text or len(text) > _MAX_CHARACTERS:
         return None
@@ -55,7 +55,7 @@ def _evaluate_text(text: str) -> bool | None:
         if comparison is not None:
             left, right = (comparison[side].replace(EMPTY, "") for side in ("left", "right"))
             return (left == right) == (comparison["operator"] == "==")
-        return _BOOLEANS.get(text.lower())
+        return _BOOLEANS.get(text.strip().lower())
     try:
         return evaluate_test(parse_python_expression(text))
     except (SyntaxError, ValueError, RecursionError):

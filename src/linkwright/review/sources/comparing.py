@@ -86,6 +86,7 @@ from linkwright.review.sources.statements.function_changes import (
 )
 from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
+from linkwright.review.sources.unbuilt_sources import is_unbuilt
 from linkwright.review.sources.unused_publishers import is_unused_publisher
 from linkwright.review.versions import Versions
 
@@ -194,8 +195,8 @@ class _SourcePair(PairedNames):
             or is_new_in_plugin(item, self.old, self.new, (old_path, path))
         ]
         kept = [item for item in only_old.values() if item not in removed]
-        for text, item in find_moved_names(kept, self.old, self.new, self.file):
-            yield self.make_change(text, item.span, self.old, None)
+        for text, item, reason in find_moved_names(kept, self.old, self.new, self.file):
+            yield self.make_change(text, item.span, self.old, reason)
         removed = [i for i in removed if i.name not in new_names.passed_on and not new_names.has_default(i)]
         added = [i for i in added if i.name not in old_names.passed_on and not old_names.has_default(i)]
         removed, added = self.select_reported(kind, removed, added, old_names, new_names)
@@ -357,9 +358,12 @@ class _SourcePair(PairedNames):
         return all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path)
 
     def _was_not_installed(self) -> bool:
-        """Return whether the old version built the source only into programs that it did not install."""
-        path = self.file.old_path
-        return path is not None and is_in_uninstalled_program(self.old.version, self.old.find_package(path), path)
+        """Return whether the old version built the source only into programs that it did not install, or not at all."""
+        path, version = self.file.old_path, self.old.version
+        package = None if path is None else self.old.find_package(path)
+        if path is None or package is None:
+            return False
+        return is_in_uninstalled_program(version, package, path) or is_unbuilt(version, package, path)
 
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path

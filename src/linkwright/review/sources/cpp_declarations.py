@@ -25,7 +25,7 @@ _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
 )
 _CLASS = re.compile(
-    r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
+    r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z][A-Z\d]*_[A-Z\d_]+\s+(?!final\b))?"
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )

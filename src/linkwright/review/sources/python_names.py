@@ -258,14 +258,14 @@ class _Reader:
                 self._names.callbacks[self._functions.qualify(function)] = (kind, text)
 
     def _read_attributes(self, definition: ast.ClassDef) -> None:
-        """Add the annotated attributes of a class, unless they are the parameters of its constructor."""
+        """Add the declared attributes of a class, unless they are the parameters of its constructor."""
         path = Path(self._python.source.name)
         self._names.class_names[definition.name] = list_known_names(path, self._python.tree, definition)
         if is_data_class(definition):
             self._names.data_classes.add(definition.name)
             return
-        for node in find_attributes(definition):
-            name = f"{definition.name}.{ast.unparse(node.target)}"
+        for attribute, node in find_attributes(definition):
+            name = f"{definition.name}.{attribute}"
             self._names.add(SourceName(NameKind.MEMBER, name, "", self._python.span(node)))
 
     def _read_methods(self, definition: ast.ClassDef) -> None:

@@ -22,6 +22,7 @@ from linkwright.review.sources.headers.swapped_arguments import (
     find_swapped_definitions,
     is_declared_without_order,
 )
+from linkwright.review.sources.headers.type_names import compare_type_names
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     HEADER_SUFFIXES,
@@ -261,7 +262,7 @@ class WholeSourcePair:
             yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to namespaces, arguments, protected members and enumerators of an installed header."""
+        """Yield the changes to namespaces, types, arguments, protected members and enumerators of a header."""
         if None in (self.file.old_path, self.file.new_path) or not self.is_interface(self.file.old_path or ""):
             return
         for change in (
@@ -270,6 +271,10 @@ class WholeSourcePair:
             *compare_enumerations(old_names.enumerations, new_names.enumerations),
         ):
             yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
+        texts = self.old.version.text(self.file.old_path or ""), self.new.version.text(self.file.path)
+        for item in compare_type_names(*texts) if self.file.path.endswith(HEADER_SUFFIXES) else ():
+            effect = Effect.CHANGED if item.reason is None else Effect.BREAKING
+            yield Change(item.text, effect, item.reason, Location(self.file.path, item.line, 1))
         for change in compare_argument_order(old_names, new_names):
             reason = change.reason if self.can_be_linked(str(change.text.arguments["name"])) else None
             yield self.make_change(change.text, change.span, self.new, reason)

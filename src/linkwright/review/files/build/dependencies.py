@@ -10,7 +10,7 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build.exports import exports_nothing
-from linkwright.review.files.build.facts import BUILD_TOOLS, EnvironmentVariables
+from linkwright.review.files.build.facts import UNSHARED_PACKAGES, EnvironmentVariables
 from linkwright.review.renames.packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
 
@@ -117,7 +117,7 @@ def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Mani
         manifest: the old manifest.
         is_private: whether nothing of the package can be used to build others.
     """
-    if any(key.package in BUILD_TOOLS for key in before):
+    if any(key.package in UNSHARED_PACKAGES for key in before):
         return False
     old_tags, new_tags = ({key.tag for key in keys} for keys in (before, after))
     if _is_metapackage(manifest):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.review.files.build.cmake_files import CMAKE_FILE, read_cmake_facts
-from linkwright.review.files.build.facts import BUILD_TOOLS, FactKind
+from linkwright.review.files.build.facts import UNSHARED_PACKAGES, FactKind
 from linkwright.review.versions import Version
 
 _EXPORTED_KINDS = frozenset(
@@ -53,7 +53,7 @@ def exports_nothing(version: Version, manifest: str) -> bool:
 
 def _blank_tools(match: re.Match[str]) -> str:
     """Return a call that exports dependencies, or nothing if it only exports tools that each package names itself."""
-    return "" if BUILD_TOOLS.issuperset(match["names"].split()) else match[0]
+    return "" if UNSHARED_PACKAGES.issuperset(match["names"].split()) else match[0]
 
 
 def _read_build_files(version: Version, manifest: str) -> Iterator[str]:

@@ -16,13 +16,17 @@ from linkwright.review.versions import Versions
 _MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
 
-BUILD_TOOLS = frozenset(
+UNSHARED_PACKAGES = frozenset(
     {
         *("ament_cmake", "ament_cmake_auto", "ament_cmake_core", "ament_cmake_python", "ament_cmake_ros", "catkin"),
         *("ament_lint_auto", "ament_lint_common", "message_generation", "rosidl_default_generators"),
+        *("launch", "launch_ros", "rclpy", "ros2launch", "roslaunch", "rospy", "xacro"),
     }
 )
-"""The packages that each package names itself if it builds with them, so that none needs them through another one."""
+"""The packages without which another package builds, although it has them only through a third one.
+
+They are build tools, which each package names itself, and packages that have no code in C++.
+"""
 _HEADER_FOLDER = "include"
 """The folder of a package below which its own sources find headers."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 
 from linkwright.packages.readers.package_xml import CATKIN
-from linkwright.review.files.build.facts import BUILD_TOOLS, BuildFacts, Fact, FactKind
+from linkwright.review.files.build.facts import UNSHARED_PACKAGES, BuildFacts, Fact, FactKind
 from linkwright.review.versions import Version
 
 _HEADER_SUFFIXES = (".h", ".hh", ".hpp", ".hxx", ".ipp", ".tpp", ".inl", ".cuh")
@@ -28,7 +28,7 @@ def is_unused_export(version: Version, path: str, old: BuildFacts, new: BuildFac
         return _has_no_headers(version, path, old, fact.name)
     if fact.kind is FactKind.EXPORTED_DEPENDENCY:
         is_tool = fact.name in _INTERFACE_TOOLS and all(other.kind is not FactKind.INTERFACE for other in new.facts)
-        return is_tool or fact.name in BUILD_TOOLS or _uses_catkin(old) != _uses_catkin(new)
+        return is_tool or fact.name in UNSHARED_PACKAGES or _uses_catkin(old) != _uses_catkin(new)
     return False
 
 

@@ -85,10 +85,14 @@ class KeyReaders:
     def have_stopped_reading(self, group: str) -> bool:
         """Return whether the sources that named a group of parameters changed, and no source names it any more.
 
+        A source may add the last word of the name to a variable, such as ``name + "_pose.x"`` for ``arm_pose``.
+
         Args:
             group: the last name of the group, which may be a part of longer names: ``limits`` of ``arm.limits.speed``.
         """
-        pattern = re.compile(rf"[\"'](?:[\w.]*\.)?{re.escape(group)}(?:\.[\w.]*)?[\"']")
+        rest = r"(?:\.[\w.]*)?[\"']"
+        word = rf"|\+\s*[\"']{re.escape(group[group.rindex('_') :])}{rest}" if "_" in group else ""
+        pattern = re.compile(rf"[\"'](?:[\w.]*\.)?{re.escape(group)}{rest}{word}")
         changed = {file.old_path for file in self.versions.changed_files}
         readers = {path for path in _list_sources(self.versions.old) if _names(self.versions.old, path, pattern)}
         return (

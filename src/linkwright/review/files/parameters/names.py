@@ -205,7 +205,10 @@ class NameRules:
                 return None  # the line about its type has the reason
             if node["node"] in self._clock_nodes or self._readers.have_renamed_node(node["node"], self._added_nodes):
                 return None
+            group = list_part_paths(parameter)[len(list_part_paths(node[0].rstrip("."))) :][0]
             if self._readers.is_package_without_node(node["node"]):
+                return None
+            if self._readers.have_stopped_reading(group.rpartition(".")[2]):
                 return None
             return _make_lost_parameters_reason(node["node"])
         lost = _find_name_items(old) - self._find_plugins(parameter) if _PLUGIN_LIST.search(parameter) else set[str]()

@@ -10,6 +10,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.included import IncludedActions, UndeclaredArgument, find_callers
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.titles import format_title
+from linkwright.review.sources.names import PYTHON_SUFFIX
 
 
 def find_new_undeclared_arguments(
@@ -19,8 +20,8 @@ def find_new_undeclared_arguments(
 
     In ROS 1, every file must declare the arguments that it uses.
     """
-    if not (is_launch_file_name(pair.new_path) or new.is_ros1):
-        return {}
+    if pair.new_path.endswith(PYTHON_SUFFIX) and not is_launch_file_name(pair.new_path):
+        return {}  # a module with functions for launch files
     before = IncludedActions(pair.versions.old, pair.old_path, old).find_undeclared_arguments()
     after = IncludedActions(pair.versions.new, pair.new_path, new).find_undeclared_arguments()
     return {

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import phrase
+from linkwright.review.sources.cpp.types import is_convertible
 from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.namespaces import HeaderChange
@@ -77,7 +78,8 @@ def _compare_types(old: SourceName, new: SourceName) -> HeaderChange:
     """Return the change of the type of a member, or of the parameters of a function."""
     if new.kind is not NameKind.FUNCTION:
         text = phrase("protected member '{name}': type {old} -> {new}", name=new.name, old=old.type, new=new.type)
-        return HeaderChange(text, new.span)
+        reason = phrase("classes that derive from the class and use it as '{type}' do not build", type=old.type)
+        return HeaderChange(text, new.span, None if is_convertible(old.type, new.type) else reason)
     change = format_overload_change(new.name, old.type, new.type)
     is_virtual = _VIRTUAL in new.details
     text = phrase("private {change}", change=change) if is_virtual else phrase("protected {change}", change=change)

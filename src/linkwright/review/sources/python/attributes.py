@@ -1,4 +1,4 @@
-"""Find the annotated attributes of Python classes, and those that a version no longer has."""
+"""Find the declared attributes of Python classes, and those that a version no longer has."""
 
 from __future__ import annotations
 
@@ -9,12 +9,21 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from linkwright.review.sources.names import PYTHON_SUFFIX, SourceName, SourceNames
 from linkwright.review.versions import Version
 
+_PROPERTIES = frozenset({"property", "cached_property", "functools.cached_property"})
+"""The decorators with which a method is read as an attribute."""
 
-def find_attributes(definition: ast.ClassDef) -> Iterator[ast.AnnAssign]:
-    """Yield the public attributes that the body of a class declares with a type, such as the fields of a model."""
+
+def find_attributes(definition: ast.ClassDef) -> Iterator[tuple[str, ast.stmt]]:
+    """Yield the public attributes that the body of a class declares: those with a type, and properties."""
+    names: dict[str, ast.stmt] = {}
     for node in definition.body:
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id[:1] != "_":
-            yield node
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names.setdefault(node.target.id, node)
+        elif isinstance(node, ast.FunctionDef) and any(
+            ast.unparse(item) in _PROPERTIES for item in node.decorator_list
+        ):
+            names.setdefault(node.name, node)
+    yield from ((name, node) for name, node in names.items() if not name.startswith("_"))
 
 
 def select_attributes(
