@@ -276,6 +276,13 @@ def test_functions_of_an_added_module_are_told(repository, compare):
     assert lines == ["classes added: 'Plan'", "functions added: 'walk' (now)"]
 
 
+def test_a_class_in_another_language_is_not_the_same_class(repository, compare):
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    repository.commit({"arm/package.xml": manifest, "arm/arm/__init__.py": "", "arm/src/plan.cpp": "class Plan {};\n"})
+    repository.write({"arm/arm/plans.py": "class Plan:\n    pass\n", "arm/src/plan.cpp": "class Plan { int a; };\n"})
+    assert sentences(subject(compare(repository), "arm/arm/plans.py")) == ["classes added: 'Plan'"]
+
+
 LAUNCH_USER = (
     "from arm import Robot\n\n\ndef generate_launch_description():\n    return [Robot.make_ip(), Robot.PORT]\n"
 )

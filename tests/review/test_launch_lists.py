@@ -223,3 +223,36 @@ def test_list_in_a_command_is_one_text(review_changes):
         "process 'ros2': command ros2 lifecycle set /front/arm active -> ros2 lifecycle set /arm active",
         "process 'router': command [router, --to=front/arm] -> [router, --to=arm]",
     ]
+
+
+JOINED = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    side = LaunchConfiguration("side", default="left")
+    return LaunchDescription([
+        DeclareLaunchArgument("side", default_value="left"),
+        Node(package="arm", executable="driver"),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("added", "expected"),
+    [
+        (", namespace=[side]", "node 'arm/driver': namespace $(var side) added"),
+        (', namespace=["arm_", side]', "node 'arm/driver': namespace arm_$(var side) added"),
+        (', parameters=[{"side": side}]', "node 'arm/driver': parameter side $(var side) added"),
+        (
+            ', parameters=[{"side": LaunchConfiguration("side", default="right")}]',
+            "node 'arm/driver': parameter side $(var side right) added",
+        ),
+    ],
+)
+def test_texts_are_joined_and_defaults_that_the_argument_has_are_left_out(review_changes, added, expected):
+    old = 'executable="driver"'
+    found, _ = review_changes("arm.launch.py", JOINED, old, old + added)
+    assert found == [expected]

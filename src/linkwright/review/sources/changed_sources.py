@@ -12,7 +12,15 @@ from types import MappingProxyType
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.review.sources.cpp.base_classes import find_base_sources
 from linkwright.review.sources.cpp_bases import ClassMethods
-from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
+    DYNAMIC_SUFFIX,
+    PYTHON_SUFFIX,
+    NameKind,
+    SourceName,
+    SourceNames,
+    Timer,
+)
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.separate_programs import are_in_separate_programs
 from linkwright.review.sources.statements.code import Code, read_code
@@ -27,8 +35,10 @@ COMMUNICATION_KINDS = (
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
+_DEFINED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+"""The kinds of definitions, which only sources of the same language can use."""
 _LOCAL_KINDS = (
-    *(NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER),
+    *(NameKind.OPTION, *_DEFINED_KINDS),
     *(NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE, NameKind.CLAIMED_INTERFACE),
 )
 """The kinds whose names may mean something else in a different source."""
@@ -162,10 +172,8 @@ class ChangedSources:
         )
 
     @cached_property
-    def _known_names(self) -> frozenset[tuple[NameKind, str]]:
-        return frozenset(
-            (item.kind, get_comparison_name(item)) for names in self._names.values() for item in names.names
-        )
+    def _known_names(self) -> frozenset[tuple[NameKind, str, bool]]:
+        return frozenset(_make_key(item, path) for path, names in self._names.items() for item in names.names)
 
     @cached_property
     def _methods(self) -> ClassMethods:
@@ -213,7 +221,7 @@ class ChangedSources:
             return not self._has_in_imported(item, path)
         if item.kind is NameKind.IMPORT:
             return True
-        if (item.kind, get_comparison_name(item)) in self._known_names:
+        if _make_key(item, path) in self._known_names:
             return False
         if item.kind is NameKind.FUNCTION and self._methods.has_function(item.name):
             return False
@@ -236,7 +244,7 @@ class ChangedSources:
         A source in other programs is another node, which failed before.
         """
         package = self.find_package(path)
-        if package is None or (item.kind, get_comparison_name(item)) in self._known_names:
+        if package is None or _make_key(item, path) in self._known_names:
             return None
         reader = self._get_unchanged(package).find_undeclared_reader(item.name)
         is_other = reader is not None and are_in_separate_programs(self.version, package, path, [reader])
@@ -388,3 +396,8 @@ def get_comparison_name(item: SourceName) -> str:
     In ROS 1, a private name may lack the ``~``.
     """
     return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name
+
+
+def _make_key(item: SourceName, path: str) -> tuple[NameKind, str, bool]:
+    """Return a key that is equal for the same name in another source."""
+    return item.kind, get_comparison_name(item), item.kind in _DEFINED_KINDS and path.endswith(PYTHON_SUFFIX)

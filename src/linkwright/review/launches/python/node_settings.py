@@ -19,12 +19,18 @@ _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments that contain other actions. These actions have their own entries."""
 _IGNORED_ARGUMENTS = frozenset({"package", "executable", "plugin", "description", "cmd"})
 """The arguments that name an action or are invisible to other programs."""
+_JOINED_ARGUMENTS = frozenset({"name", "namespace", "exec_name", "output", "cwd", "prefix"})
+"""The arguments whose texts and substitutions launch joins to one text."""
 
 
 def format_settings(values: Mapping[str, BoundExpression]) -> dict[str, str]:
     """Return the texts of the arguments of an action, without those that name it or contain other actions."""
     ignored = {*_IGNORED_ARGUMENTS, *_INNER_ACTIONS, CONDITION}
-    return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
+    texts: dict[str, str] = {}
+    for key, value in values.items():
+        format_value = value.texts.format_joined if key in _JOINED_ARGUMENTS else value.texts.text
+        texts |= {} if key in ignored else {key: format_value(value.node)}
+    return texts
 
 
 def split_choice(value: BoundExpression, split: Callable[[BoundExpression], dict[str, str]]) -> dict[str, str]:

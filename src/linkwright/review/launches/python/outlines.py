@@ -62,12 +62,28 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader = _Reader(python, helpers, texts)
     reader.visit(python.tree)
     variables = find_set_variables(python, texts)
-    entries = [*merge_branches(list(reader.read_entries())), *variables.values()]
+    entries = [*_drop_declared_defaults(merge_branches(list(reader.read_entries()))), *variables.values()]
     entries.sort(key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | variables.keys() | _find_covered_literals(python, helpers, reader.evaluated)
     code = read_other_code(python, covered, reader.branches, texts)
     definitions = find_definitions(python, texts)
     return LaunchOutline(entries, code, definitions, find_scope_sources(python), tests=read_tests(python))
+
+
+def _drop_declared_defaults(entries: Sequence[Entry]) -> Iterator[Entry]:
+    """Yield entries without the defaults in ``$(var NAME DEFAULT)`` that the arguments of the file have as well."""
+    arguments = [entry for entry in entries if entry.kind == "argument" and CONDITION not in entry.settings]
+    texts = {
+        f"$(var {item.name} {default})": item.name for item in arguments if (default := item.settings.get("default"))
+    }
+
+    def drop(value: str) -> str:
+        for text, name in texts.items() if "$(var " in value else ():
+            value = value.replace(text, f"$(var {name})")
+        return value
+
+    for entry in entries:
+        yield replace(entry, settings={key: drop(value) for key, value in entry.settings.items()})
 
 
 def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:

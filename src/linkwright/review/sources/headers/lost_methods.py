@@ -1,4 +1,4 @@
-"""Find C++ sources that call methods which the header of their class no longer declares."""
+"""Find C++ sources that call methods which the header of a class no longer declares, or never did."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.headers.lost_types import blank_comments, find_including_files
+from linkwright.review.sources.headers.object_calls import ObjectCalls
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -18,17 +19,25 @@ _DEFINITION = re.compile(r"\b(?P<class>\w+)::~?\w+\s*\([^;{}]*\)[^;{}]*\{")
 
 
 def find_lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the sources that call ``this->method()`` for a method that the header lost.
+    """Yield the sources that call a method which its class does not have, each with a change.
 
+    The header lost the method, or a changed source newly calls it through an object whose type is certain.
     Classes with base classes, which may declare the method, are left out.
     """
     lost = {
         file.new_path: methods for file in changed_files if file.new_path and (methods := _find_lost(versions, file))
     }
-    if not lost:
+    changed = {
+        file.new_path: versions.old.text(file.old_path) if file.old_path else ""
+        for file in changed_files
+        if file.new_path and file.new_path.endswith(CPP_SUFFIXES) and not file.is_submodule
+    }
+    if not changed:
         return
     paths = versions.new.paths(CPP_SUFFIXES)
     texts = {path: versions.new.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
+    calls = ObjectCalls(texts)
+    told: set[tuple[str, str, str]] = set()
     for header, methods in lost.items():
         for path in find_including_files(texts, header):
             code = blank_comments(texts[path])
@@ -36,6 +45,16 @@ def find_lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) 
                 line = _find_call_line(code, class_name, method)
                 if line:
                     yield path, _make_change(path, header, class_name, method, line)
+            for call in calls.find_missing(path, {method for _, method in methods}):
+                if call.header == header and (call.class_name, call.method) in methods:
+                    told.add((path, call.class_name, call.method))
+                    yield path, _make_change(path, header, call.class_name, call.method, call.line)
+    for path, old_text in changed.items():
+        for call in calls.find_missing(path, calls.find_called(path) - calls.list_called(blank_comments(old_text))):
+            key = path, call.class_name, call.method
+            if key not in told:
+                told.add(key)
+                yield path, _make_change(path, call.header, call.class_name, call.method, call.line)
 
 
 def _find_lost(versions: Versions, file: ChangedFile) -> list[tuple[str, str]]:
