@@ -161,7 +161,7 @@ def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> Any:
     geom = body.add_geom(mass=0.0)
     set_pose(geom, placed_shape.pose)
     if isinstance(shape, np.ndarray):
-        name = f"hull {hashlib.sha256(np.ascontiguousarray(shape)).hexdigest()}"
+        name = f"hull {hashlib.sha256(shape.tobytes()).hexdigest()}"
         if spec.mesh(name) is None:
             mesh = spec.add_mesh(name=name, uservert=shape.ravel().tolist())
             mesh.inertia = load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL  # Thin meshes have too little volume.

@@ -74,7 +74,7 @@ from linkwright.review.sources.reasons import (
     is_used_by_others,
     make_reader_reason,
 )
-from linkwright.review.sources.separate_programs import is_in_uninstalled_program
+from linkwright.review.sources.separate_programs import is_in_no_installed_program
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.statements.frame_changes import drop_told_frames
@@ -86,7 +86,6 @@ from linkwright.review.sources.statements.function_changes import (
 )
 from linkwright.review.sources.statements.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.type_variants import TypeVariants
-from linkwright.review.sources.unbuilt_sources import is_unbuilt
 from linkwright.review.sources.unused_publishers import is_unused_publisher
 from linkwright.review.versions import Versions
 
@@ -359,11 +358,8 @@ class _SourcePair(PairedNames):
 
     def _was_not_installed(self) -> bool:
         """Return whether the old version built the source only into programs that it did not install, or not at all."""
-        path, version = self.file.old_path, self.old.version
-        package = None if path is None else self.old.find_package(path)
-        if path is None or package is None:
-            return False
-        return is_in_uninstalled_program(version, package, path) or is_unbuilt(version, package, path)
+        path = self.file.old_path
+        return path is not None and is_in_no_installed_program(self.old.version, self.old.find_package(path), path)
 
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path

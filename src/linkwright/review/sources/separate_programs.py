@@ -10,6 +10,7 @@ from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.files.build.facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
+from linkwright.review.sources.unbuilt_sources import is_unbuilt
 from linkwright.review.versions import Version
 
 _INSTALLED_TARGETS = re.compile(
@@ -48,8 +49,8 @@ def find_programs(version: Version, package: str, path: str) -> tuple[frozenset[
 
 
 @cached_in_review(maxsize=256)
-def is_in_uninstalled_program(version: Version, package: str | None, path: str) -> bool:
-    """Return whether a source is only in programs that its package of ament builds but does not install.
+def is_in_no_installed_program(version: Version, package: str | None, path: str) -> bool:
+    """Return whether no target builds a source, or only programs that its package of ament does not install.
 
     No launch file or user starts such a program by its package.
 
@@ -58,8 +59,12 @@ def is_in_uninstalled_program(version: Version, package: str | None, path: str) 
         package: the folder of the package; None for a file outside of packages.
         path: the path of the source.
     """
-    facts = None if package is None else read_package_facts(version, package)
-    if package is None or facts is None or facts.routines or not PurePosixPath(path).is_relative_to(package):
+    if package is None or not PurePosixPath(path).is_relative_to(package):
+        return False
+    if is_unbuilt(version, package, path):
+        return True
+    facts = read_package_facts(version, package)
+    if facts is None or facts.routines:
         return False
     installed = _INSTALLED_TARGETS.findall(version.text(f"{package}/{CMAKE_FILE}".lstrip("/")))
     if not installed or any("$" in names for names in installed):
