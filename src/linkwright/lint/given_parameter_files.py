@@ -22,6 +22,8 @@ _NAME = lazy_pattern(r"[A-Za-z_]\w*")
 _YAML_SUFFIXES = (".yaml", ".yml")
 _SEVERAL_NODES = lazy_pattern(r"component_container|ros2_control_node|move_group|gzserver|gz_server|spawner")
 """The names of programs that contain other nodes, or that give the file to others."""
+_INNER_NODES = frozenset({"controller_manager", "global_costmap", "local_costmap"})
+"""The nodes that programs with other names contain, such as the drivers of simulators and the servers of Nav2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,8 @@ def _clean(name: str | None) -> str | None:
 def read_sections(file: Path) -> list[str] | None:
     """Return the last parts of the names of the nodes for which a parameter file has sections.
 
-    The result is None if the file cannot be read, if it has a section for any node, or a part without parameters.
+    The result is None if the file cannot be read, if it has a section for any node or for one that other programs
+    contain, or a part without parameters.
     """
     import yaml
 
@@ -113,7 +116,8 @@ def read_sections(file: Path) -> list[str] | None:
     except (OSError, ValueError, yaml.YAMLError, RecursionError):
         return None
     names = list(_list_sections(content, ""))
-    return None if not names or any("*" in name for name in names) or "" in names else names
+    is_for_others = any("*" in name for name in names) or not _INNER_NODES.isdisjoint(names)
+    return None if not names or "" in names or is_for_others else names
 
 
 def _list_sections(content: object, name: str) -> Iterator[str]:
