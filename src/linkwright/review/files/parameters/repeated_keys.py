@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import yaml
@@ -9,6 +10,8 @@ import yaml
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change, Location
 from linkwright.review.file_pair import FilePair
+
+_MERGE_KEY = "<<"
 
 
 def report_repeated_keys(pair: FilePair, old: yaml.Node | None, new: yaml.Node | None) -> None:
@@ -19,28 +22,30 @@ def report_repeated_keys(pair: FilePair, old: yaml.Node | None, new: yaml.Node |
         old: the root node of the old version.
         new: the root node of the new version.
     """
-    known = {path for path, _ in _list_repeated(old, "", frozenset())}
-    for path, key in _list_repeated(new, "", frozenset()):
+    known = {path for path, _ in _list_repeated(old, "", set())}
+    for path, key in _list_repeated(new, "", set()):
         if path not in known:
             mark = key.start_mark
             text = phrase("key '{name}' is repeated in its mapping; only the last value counts", name=path)
             pair.changes.append(Change(text, location=Location(pair.new_path, mark.line + 1, mark.column + 1)))
 
 
-def _list_repeated(node: yaml.Node | None, path: str, parents: frozenset[int]) -> Iterator[tuple[str, yaml.Node]]:
-    """Yield the paths of repeated keys, with the last key of each."""
-    if node is None or id(node) in parents:
+def _list_repeated(node: yaml.Node | None, path: str, seen: set[int]) -> Iterator[tuple[str, yaml.Node]]:
+    """Yield the paths of repeated keys, with the last key of each. Nodes with aliases are read once."""
+    if node is None or id(node) in seen:
         return
-    parents |= {id(node)}
+    seen.add(id(node))
     if isinstance(node, yaml.SequenceNode):
         for number, item in enumerate(node.value):
-            yield from _list_repeated(item, f"{path}[{number}]", parents)
+            yield from _list_repeated(item, f"{path}[{number}]", seen)
     elif isinstance(node, yaml.MappingNode):
-        last = {key.value: key for key, _ in node.value if isinstance(key, yaml.ScalarNode) and key.value != "<<"}
-        counts = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
-        for name, key in last.items():
-            inner = f"{path}.{name}" if path else str(name)
-            if counts.count(name) > 1:
-                yield inner, key
+        keys = [key for key, _ in node.value if isinstance(key, yaml.ScalarNode) and key.value != _MERGE_KEY]
+        counts = Counter(key.value for key in keys)
+        last = {key.value: key for key in keys if counts[key.value] > 1}
+        yield from ((_join(path, name), key) for name, key in last.items())
         for key, value in node.value:
-            yield from _list_repeated(value, f"{path}.{key.value}" if path else str(key.value), parents)
+            yield from _list_repeated(value, _join(path, key.value), seen)
+
+
+def _join(path: str, key: object) -> str:
+    return f"{path}.{key}" if path else str(key)
