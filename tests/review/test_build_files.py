@@ -474,11 +474,11 @@ def test_added_and_removed_dependencies_have_their_conditions(repository, compar
     ],
 )
 def test_dependency_that_is_no_longer_exported_by_the_package_is_breaking(repository, compare, old, new, is_breaking):
-    text = EXPORTS.replace("exec_depend>", f"{old}>")
+    text = EXPORTS.replace("exec_depend>", f"{old}>").replace("xacro", "urdf")
     repository.commit({"a/package.xml": text})
     repository.write({"a/package.xml": text.replace(f"{old}>", f"{new}>")})
     result = compare(repository)
-    assert sentences(subject(result, "a/package.xml")) == [f"{old} -> {new}: xacro"]
+    assert sentences(subject(result, "a/package.xml")) == [f"{old} -> {new}: urdf"]
     assert bool(breaking(result)) is is_breaking
 
 

@@ -276,7 +276,10 @@ def _is_made_nowhere(name: str, version: Version, path: str) -> bool:
     parts = name.strip("~/").split("/")
     known = [part for part in parts if part != parts[-1] or not _IMPLIED.fullmatch(part)]
     for other in version.paths(_NAMING_SUFFIXES):
-        text = without_comments(version.text(other), other) if other != path and known else ""
+        text = version.text(other) if other != path else ""
+        if not any(part.partition("_")[0] in text for part in known):
+            continue
+        text = without_comments(text, other)
         is_source = other.endswith((*CPP_SUFFIXES, PYTHON_SUFFIX))
         known = [part for part in known if not _can_have(text, part, is_source=is_source)]
     return bool(known)

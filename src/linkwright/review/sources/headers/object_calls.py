@@ -28,9 +28,7 @@ _DECLARATION = re.compile(
     r"(?P<name>[A-Za-z_]\w*)\s*(?=[;=({,)\[]|:(?!:))"
 )
 _BINDING = re.compile(r"\bauto\b[\s&]*\[(?P<names>[\w\s,]*)\]")
-_NOT_TYPES = frozenset(
-    {*("return", "else", "delete", "new", "throw", "case", "goto", "co_return", "typename"), "using"}
-)
+_NOT_TYPES = frozenset(("return", "else", "delete", "new", "throw", "case", "goto", "co_return", "typename", "using"))
 
 
 class MissingMethod(NamedTuple):
