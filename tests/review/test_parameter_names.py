@@ -476,3 +476,32 @@ def test_parameters_of_a_controller_with_another_class_are_told_with_it(reposito
     repository.write({"lamp.yaml": manager.replace("lamp/Fast", f"lamp/{new_class}")})
     (line,) = breaking(compare(repository))
     assert line.startswith(start)
+
+
+CRITICS = """controller_server:
+  ros__parameters:
+    controller_plugins: [Follow]
+    Follow:
+      critics: [GoalCritic, Heading]
+      GoalCritic: {weight: 5.0, power: 1}
+      Heading: {scale: 2.0, power: 1}
+      SpeedCritic: {weight: 1.0, power: 1}
+      Limits: {radius: 0.2, speed: 1.0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("lost", "remaining", "is_breaking"),
+    [
+        ("Heading: {scale: 2.0, power: 1}", "[GoalCritic]", False),
+        ("Heading: {scale: 2.0, power: 1}", "[GoalCritic, Heading]", True),
+        ("SpeedCritic: {weight: 1.0, power: 1}", "[GoalCritic, Heading]", False),
+        ("SpeedCritic: {weight: 1.0, power: 1}", "[GoalCritic, Heading, SpeedCritic]", True),
+        ("Limits: {radius: 0.2, speed: 1.0}", "[GoalCritic]", True),
+    ],
+)
+def test_controller_reads_no_parameters_of_a_critic_that_it_does_not_list(review_changes, lost, remaining, is_breaking):
+    new = CRITICS.replace(f"      {lost}\n", "").replace("[GoalCritic, Heading]", remaining)
+    _, breaking_lines = review_changes(CRITICS, new)
+    name = lost.partition(":")[0]
+    assert [f"Follow.{name}" in line for line in breaking_lines] == [True] * is_breaking

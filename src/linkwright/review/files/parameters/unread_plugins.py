@@ -14,6 +14,8 @@ _LAYER = re.compile(r"\w+_layer")
 """The names of the layers of costmaps, whose class the file may leave out."""
 _DEFAULT_PLUGINS = frozenset({"progress_checker", "goal_checker", "general_goal_checker"})
 """The plugins that a node of Nav2 loads by default, beside those that another list names."""
+_CRITIC = "Critic"
+"""The end of the names of the critics of MPPI."""
 
 
 def is_unread_plugin(parameter: str, root: str, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> bool:
@@ -27,7 +29,9 @@ def is_unread_plugin(parameter: str, root: str, old: Mapping[str, YamlValue], ne
         old: the old values by path.
         new: the new values by path.
     """
-    plugin = parameter.removeprefix(f"{root}.").partition(".")[0]
+    plugin, _, rest = parameter.removeprefix(f"{root}.").partition(".")
+    if _is_unread_critic(rest.partition(".")[0], f"{root}.{plugin}.critics", old, new):
+        return True
     if f"{root}.{plugin}.plugin" not in old and not _LAYER.fullmatch(plugin):
         return False
     lists = {name: list_items(value.text) for name, value in old.items() if _names_plugins(name, root)}
@@ -38,6 +42,13 @@ def is_unread_plugin(parameter: str, root: str, old: Mapping[str, YamlValue], ne
     if not naming:
         return plugin not in _DEFAULT_PLUGINS
     return all(name in new_lists for name in naming)
+
+
+def _is_unread_critic(name: str, critics: str, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> bool:
+    """Return whether a controller of Nav2 no longer lists a critic, or never did."""
+    if critics not in old or critics not in new or name in list_items(new[critics].text):
+        return False
+    return name in list_items(old[critics].text) or name.endswith(_CRITIC)
 
 
 def _names_plugins(name: str, root: str) -> bool:
