@@ -505,3 +505,32 @@ def test_controller_reads_no_parameters_of_a_critic_that_it_does_not_list(review
     _, breaking_lines = review_changes(CRITICS, new)
     name = lost.partition(":")[0]
     assert [f"Follow.{name}" in line for line in breaking_lines] == [True] * is_breaking
+
+
+REFUSED = """controller_manager:
+  ros__parameters:
+    update_rate: 50
+hand_controller:
+  type: position_controllers/JointPositionController
+  joints: [finger]
+state_controller:
+  type: joint_state_controller/JointStateController
+  rate: 50
+"""
+
+
+@pytest.mark.parametrize("is_refused", [True, False])
+def test_file_that_ros2_refused_had_no_readers(review_changes, is_refused):
+    old = REFUSED if is_refused else REFUSED.replace("  ros__parameters:\n    update_rate", "  update_rate")
+    new = """controller_manager:
+  ros__parameters:
+    update_rate: 50
+    hand_controller:
+      type: position_controllers/JointGroupPositionController
+hand_controller:
+  ros__parameters:
+    joints: [finger]
+"""
+    found, breaking_lines = review_changes(old, new)
+    assert any(line.startswith("state_controller removed") for line in found)
+    assert bool(breaking_lines) is not is_refused

@@ -45,7 +45,8 @@ def find_group_reason(
 
     A group that moved to a file which launch files load is not lost. No program reads the group of a plugin that its
     list loses, such as a recovery behavior of ``move_base``. A list is not a group. In ROS 2, no program gets
-    parameters without the name of a node. A file that descriptions read is for them only.
+    parameters without the name of a node, and ROS 2 refuses files that also have a group for none. A file that
+    descriptions read is for them only.
 
     Args:
         pair: both versions of the file.
@@ -53,7 +54,8 @@ def find_group_reason(
         values: the paths of its values.
         lost_items: the names of list items that only the old version has.
     """
-    is_unread = name == _PARAMETERS or name in lost_items
+    is_refused = _PARAMETERS in pair.versions.old.text(pair.old_path)
+    is_unread = name == _PARAMETERS or name in lost_items or is_refused
     if is_unread or len(values) < _MIN_GROUP_SIZE or "." in name:
         return None
     if any("[" in value or is_parameter(value) for value in values) or _is_unread_by_descriptions(pair, name):

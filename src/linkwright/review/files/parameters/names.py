@@ -222,6 +222,8 @@ class NameRules:
             return _make_lost_parameters_reason(node["node"])
         if node is not None and controller is None and self._is_removed_like_group(parameter, root):
             return _make_lost_parameters_reason(node["node"])
+        if any(map(_NODE.match, self._old)):
+            return None  # ROS 2 refuses the whole file because of a part without `ros__parameters`
         ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
