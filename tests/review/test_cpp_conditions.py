@@ -23,6 +23,7 @@ Arm::Arm() : Node("arm") {{
   {line}
 {after}
   declare_parameter("rate", 1);
+  p_->publish(message);
 }}
 """
 
