@@ -162,7 +162,7 @@ def find_removal_reason(tag: str, name: str) -> Phrase | None:
     """Return the reason why removing an element is breaking; None if it is not."""
     if tag == "group":
         return phrase("programs that plan for the group '{name}' do not find it", name=name)
-    if tag == "group_state":
+    if tag == "group_state" and not name.startswith("/"):  # MoveIt skips states without a group
         return phrase("programs that move to the state '{name}' do not find it", name=name)
     if tag == "end_effector":
         return phrase("programs that use the end effector '{name}' do not find it", name=name)
