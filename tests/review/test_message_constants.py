@@ -56,3 +56,20 @@ def test_same_name_by_a_constant_of_a_message_is_no_change(repository, compare, 
     shown = "dr/depth" if "DEPTH" in old else old
     lines = sentences(subject(compare(repository), path))
     assert [line for line in lines if "publisher" in line] == [f"publisher '{shown}': type Float64 -> Int8"]
+
+
+@pytest.mark.parametrize(("folder", "shown"), [("", "ArmTopics.DEPTH"), ("messages", "dr/depth")])
+def test_messages_beside_the_repository_are_unknown(repository, compare, folder, shown):
+    """What is beside a repository differs between the computers."""
+    place = repository.root / (folder or "..") / "arm_msgs"
+    for path, text in FILES.items():
+        if path.startswith("messages/"):
+            file = place / path.removeprefix("messages/arm_msgs/")
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+    package = "nodes/arm/" if folder else ""
+    files = {f"{package}package.xml": FILES["nodes/drive/arm/package.xml"]}
+    repository.commit({**files, f"{package}arm/arm.py": PYTHON.format("Float64", "ArmTopics.DEPTH")})
+    repository.write({f"{package}arm/arm.py": PYTHON.format("Int8", "ArmTopics.DEPTH")})
+    lines = sentences(subject(compare(repository), f"{package}arm/arm.py"))
+    assert f"publisher '{shown}': type Float64 -> Int8" in lines

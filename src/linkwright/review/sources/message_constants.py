@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import ast
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.files.scratch_folders import is_scratch_folder
 from linkwright.packages import MANIFEST
 from linkwright.packages.manifest import enclosing_package, package_name
 from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
+from linkwright.review.sources.enclosing_folders import list_enclosing_folders
 
 _MAX_LEVELS = 5
 """The maximum number of folders above a package in which another package of the repository is searched."""
@@ -59,22 +59,13 @@ def read_message_constants(path: Path, package: str, message: str) -> Mapping[st
         package: the name of the package of the message.
         message: the name of the message.
     """
-    for folder in _list_neighbor_folders(path):
+    own = enclosing_package(path.parent)
+    package_folder = (path.parent if own is None else own[1]).resolve()
+    for folder in list_enclosing_folders(package_folder, 1 + _MAX_LEVELS)[1:]:
         file = _find_message(folder, package, message)
         if file is not None:
             return _read_texts(file, file.stat().st_mtime_ns)
     return {}
-
-
-def _list_neighbor_folders(path: Path) -> Iterator[Path]:
-    """Yield the folders of the repository that contain the package of a source, the nearest one first."""
-    own = enclosing_package(path.parent)
-    for folder in list((path.parent if own is None else own[1]).resolve().parents)[:_MAX_LEVELS]:
-        if is_scratch_folder(folder):
-            return
-        yield folder
-        if (folder / ".git").exists():
-            return
 
 
 def _find_message(folder: Path, package: str, message: str) -> Path | None:
@@ -92,7 +83,7 @@ def _list_folders(folder: Path, name: str) -> tuple[Path, ...]:
     found: list[Path] = []
     level = [folder]
     for _ in range(_MAX_DEPTH):
-        found += (parent / name for parent in level if (parent / name / MANIFEST).is_file())
+        found += (parent / name for parent in level if _has_manifest(parent / name))
         level = [child for parent in level for child in _list_children(parent)]
     return tuple(found)
 
@@ -105,7 +96,14 @@ def _list_children(folder: Path) -> list[Path]:
     except OSError:
         return []
     children = (folder / name for name in sorted(names) if not name.startswith("."))
-    return [child for child in children if not (child / MANIFEST).is_file()]
+    return [child for child in children if not _has_manifest(child)]
+
+
+def _has_manifest(folder: Path) -> bool:
+    try:
+        return (folder / MANIFEST).is_file()
+    except OSError:  # a folder that the user may not read
+        return False
 
 
 @cached_in_review(maxsize=64)

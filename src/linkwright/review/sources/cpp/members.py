@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from linkwright.packages import enclosing_package
 from linkwright.review.sources.cpp.preprocessor import blank_disabled
+from linkwright.review.sources.enclosing_folders import list_enclosing_folders
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceName
 
 _CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
@@ -109,7 +110,7 @@ def find_included_headers(path: Path) -> list[Path]:
         return []
     package = enclosing_package(path.parent)
     base = (_find_built_folder(path) if package is None else package[1]).resolve()
-    folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
+    folders = [path.parent, *(folder / "include" for folder in list_enclosing_folders(path.parent, _MAX_FOLDERS))]
     headers = []
     for match in _INCLUDE.finditer(text):
         places = [(base, folder) for folder in folders]
@@ -124,13 +125,13 @@ def find_included_headers(path: Path) -> list[Path]:
 
 def _find_built_folder(path: Path) -> Path:
     """Return the folder that CMake builds a source in no package from, or else the folder of the source."""
-    folders = list(path.parents)[:_MAX_FOLDERS]
+    folders = list_enclosing_folders(path.parent, _MAX_FOLDERS)
     return next((folder for folder in folders if (folder / "CMakeLists.txt").is_file()), path.parent)
 
 
 def _find_neighbor(package: Path, name: str) -> Path | None:
     """Return the folder of another package near a package, if it has its name, or None."""
-    folders = (folder / name for folder in list(package.parents)[:_MAX_LEVELS])
+    folders = (folder / name for folder in list_enclosing_folders(package, 1 + _MAX_LEVELS)[1:])
     return next((folder for folder in folders if (folder / "package.xml").is_file()), None)
 
 

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 
+from linkwright.review.sources.enclosing_folders import list_enclosing_folders
+
 _LIST = "list"
 _TEXT = "string"
 _INTEGER_PATTERN = r"(?:(?:unsigned|signed|short|long|int)\b[ \t]*)+|(?:std::)?(?:u?int(?:8|16|32|64)_t|size_t)\b"
@@ -116,7 +118,7 @@ def _find_declarations(text: str) -> Iterator[tuple[str, int, str]]:
 
 def _read_field(path: Path, package: str, message: str, name: str) -> str:
     """Return the type of a field of a message of a package near a source; empty if it is unknown."""
-    folders = list(path.parents)[:_MAX_FOLDERS]
+    folders = list_enclosing_folders(path.parent, _MAX_FOLDERS)
     file = next((file for folder in folders if (file := folder / package / "msg" / f"{message}.msg").is_file()), None)
     text = "" if file is None else file.read_text("utf-8", errors="replace")
     field = next((match for match in _FIELD.finditer(text) if match["name"] == name), None)
