@@ -140,10 +140,14 @@ class ExpressionTexts:
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         passed = dict(zip(names, call.args, strict=False))
+        count = len(passed)
+        if parameters.vararg is not None:
+            passed[parameters.vararg.arg] = ast.Tuple(call.args[count:], ast.Load())
+            count = len(call.args)
         passed |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
         defaults = find_parameter_defaults(function.node)
-        names += [argument.arg for argument in parameters.kwonlyargs]
-        is_complete = len(passed) == len(call.args) + len(call.keywords) and set(names) == passed.keys() | defaults
+        names += [argument.arg for argument in (*parameters.kwonlyargs, parameters.vararg) if argument is not None]
+        is_complete = count == len(call.args) and set(names) == passed.keys() | defaults.keys()
         if not is_complete:
             return None
         module_texts = ExpressionTexts(function.python, helpers=self._helpers, depth=self._depth + 1)
@@ -403,6 +407,9 @@ class ExpressionTexts:
         if template is not None:
             return template
         if isinstance(node, ast.Call):
+            unpacked = self._unpack_arguments(node)
+            if unpacked is not None:
+                return unpacked.texts._format(unpacked.node, depth)
             substitution = format_substitution(self.python, node, part)
             result = self._find_result(node) if substitution is None else None
             if result is not None:
@@ -438,6 +445,24 @@ class ExpressionTexts:
             )
             return f" if {unparse_on_one_line(node.test)} else ".join(values)
         return unparse_on_one_line(node)
+
+    def _unpack_arguments(self, call: ast.Call) -> BoundExpression | None:
+        """Return a call with the items of the lists that it unpacks (``*items``), or None for other calls."""
+        arguments: list[ast.expr] = []
+        bindings: dict[str, str] = {}
+        for argument in call.args:
+            value = self.resolve(argument.value) if isinstance(argument, ast.Starred) else None
+            if value is None or not isinstance(value.node, (ast.List, ast.Tuple)) or _unpacks(value.node):
+                arguments.append(argument)
+                continue
+            for item in value.node.elts:
+                name = f"*{len(bindings)}"  # no other name is written so
+                bindings[name] = value.texts.text(item)
+                arguments.append(ast.copy_location(ast.Name(name, ast.Load()), call))
+        if not bindings:
+            return None
+        unpacked = ast.copy_location(ast.Call(call.func, arguments, call.keywords), call)
+        return BoundExpression(self.with_names(bindings, {}), unpacked)
 
     def _format_choice(self, node: ast.expr, part: Formatter) -> str | None:
         """Return one of two texts that an argument chooses as an expression of XML launch files; None for others."""
@@ -490,6 +515,11 @@ class ExpressionTexts:
             if item is not None:
                 return owner.texts.resolve(item)
         return BoundExpression(self, node)
+
+
+def _unpacks(node: ast.List | ast.Tuple) -> bool:
+    """Return whether a literal list contains the items of another list."""
+    return any(isinstance(item, ast.Starred) for item in node.elts)
 
 
 def format_branches(test: ast.expr) -> tuple[str, str]:

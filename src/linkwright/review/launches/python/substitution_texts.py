@@ -52,6 +52,8 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
         return part(owner) if is_share else None
     if function in ("perform", "__str__", "as_posix") and isinstance(node.func, ast.Attribute):
         return part(node.func.value)
+    if function == "joinpath" and isinstance(node.func, ast.Attribute):
+        return _join_path([part(node.func.value), *map(part, arguments)])
     if function in _TEXT_METHODS and isinstance(node.func, ast.Attribute):
         return _format_text_method(part(node.func.value), function, node)
     if first is None:
