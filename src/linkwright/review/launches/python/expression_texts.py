@@ -17,6 +17,7 @@ from linkwright.review.launches.python.helpers import HelperFunctions, find_para
 from linkwright.review.launches.python.names import is_chosen_value
 from linkwright.review.launches.python.substitution_texts import (
     Formatter,
+    find_parent,
     format_substitution,
     get_call_arguments,
     is_configurations,
@@ -433,7 +434,9 @@ class ExpressionTexts:
                 return f"{owner.texts.text(function, depth + 1)}(...)[{part(node.slice)}]"
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
-            return f"{part(node.value)}.{node.attr}"
+            owner = part(node.value)
+            folder = find_parent(self.python, owner) if node.attr == "parent" else None
+            return f"{owner}.{node.attr}" if folder is None else folder
         if isinstance(node, ast.BoolOp) and (operand := self._choose_operand(node)) is not None:
             return part(operand)
         choice = self._format_choice(node, part)
