@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import ast
-import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PYTHON_COMPARISONS, PythonFile, called_name
 from linkwright.review.launches.chosen_texts import make_choice, quote_text
-from linkwright.review.launches.expressions import unparse_on_one_line
+from linkwright.review.launches.expressions import shorten_text, unparse_on_one_line
 from linkwright.review.launches.outlines import split_text, with_condition
 from linkwright.review.launches.python.conditions import SUBSTITUTIONS, read_tests
 from linkwright.review.launches.python.helpers import HelperFunctions, find_parameter_defaults
+from linkwright.review.launches.python.literals import LOOP_FUNCTIONS
 from linkwright.review.launches.python.names import is_chosen_value
 from linkwright.review.launches.python.substitution_texts import (
     Formatter,
@@ -24,13 +24,11 @@ from linkwright.review.launches.python.substitution_texts import (
     is_string,
     split_pieces,
 )
-from linkwright.review.launches.python.syntax import find_list_item
+from linkwright.review.launches.python.syntax import find_list_item, is_filled
 from linkwright.review.launches.python.text_templates import format_template, strip_conversion
 from linkwright.review.texts.list_changes import EMPTY
 
 _MAX_DEPTH = 30
-_MAX_CHARACTERS = 10_000
-"""The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _MAX_FUNCTION_DEPTH = 3
 """The maximum number of functions that return the value of each other."""
 _VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
@@ -83,16 +81,9 @@ class ExpressionTexts:
 
     def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
         """Return the texts of a loop pass, or None if the item does not fit the variables."""
-        if isinstance(target, ast.Name):
-            names, values = [target], [item]
-        elif isinstance(target, ast.Tuple) and isinstance(item.node, (ast.Tuple, ast.List)):
-            names = [name for name in target.elts if isinstance(name, ast.Name)]
-            values = [item.texts.resolve(value) for value in item.node.elts]
-            if not len(names) == len(target.elts) == len(values):
-                return None
-        else:
+        items_by_name = _assign_item(target, item)
+        if items_by_name is None:
             return None
-        items_by_name = {name.id: value for name, value in zip(names, values, strict=True)}
         bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
         return self.with_names(bindings, items_by_name)
 
@@ -191,14 +182,43 @@ class ExpressionTexts:
         return isinstance(node, _VALUES)
 
     def find_items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a literal list or dictionary, or None for other expressions."""
+        """Return what a loop over a literal list or dictionary yields, or None for other expressions.
+
+        The loop may number or join the items with ``enumerate`` or ``zip``.
+        """
         value = self.resolve(node)
+        if isinstance(value.node, ast.Call) and called_name(value.node) in LOOP_FUNCTIONS:
+            return value.texts._find_loop_items(value.node)
         items = value.texts.find_dictionary_items(value.node)
         if items is not None:
             return items
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
+        if not value.node.elts and isinstance(node, ast.Name) and is_filled(self.python.tree, node.id):
+            return None
         return [value.texts.resolve(item) for item in value.node.elts]
+
+    def _find_loop_items(self, call: ast.Call) -> list[BoundExpression] | None:
+        """Return what ``enumerate`` or ``zip`` yields, or None if an argument is unknown."""
+        function = called_name(call)
+        if call.keywords or not call.args:
+            return None
+        lists = [self.find_items(argument) for argument in call.args]
+        known_lists = [items for items in lists if items is not None]
+        if len(known_lists) < len(lists):
+            return None
+        if function == "enumerate":
+            numbers = [BoundExpression(self, ast.Constant(number)) for number in range(len(known_lists[0]))]
+            known_lists = [numbers, *known_lists]
+        return [self._make_tuple(items, call) for items in zip(*known_lists, strict=False)]
+
+    def _make_tuple(self, items: Sequence[BoundExpression], location: ast.expr) -> BoundExpression:
+        """Return a tuple of expressions that may be written in several files."""
+        names = [f"*{number}" for number in range(len(items))]  # no other name is written so
+        bindings = {name: item.texts.text(item.node) for name, item in zip(names, items, strict=True)}
+        texts = self.with_names(bindings, dict(zip(names, items, strict=True)))
+        elements: list[ast.expr] = [ast.copy_location(ast.Name(name, ast.Load()), location) for name in names]
+        return BoundExpression(texts, ast.copy_location(ast.Tuple(elements, ast.Load()), location))
 
     def find_dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
         """Return what a loop over a dictionary or a view of it yields, or None."""
@@ -520,6 +540,23 @@ class ExpressionTexts:
         return BoundExpression(self, node)
 
 
+def _assign_item(target: ast.expr, item: BoundExpression) -> dict[str, BoundExpression] | None:
+    """Return the values of the variables of a loop, by name, or None if the item does not fit them."""
+    if isinstance(target, ast.Name):
+        return {target.id: item}
+    if not isinstance(target, (ast.Tuple, ast.List)) or not isinstance(item.node, (ast.Tuple, ast.List)):
+        return None
+    if len(target.elts) != len(item.node.elts):
+        return None
+    values: dict[str, BoundExpression] = {}
+    for part, value in zip(target.elts, item.node.elts, strict=True):
+        assigned = _assign_item(part, item.texts.resolve(value))
+        if assigned is None:
+            return None
+        values |= assigned
+    return values
+
+
 def _unpacks(node: ast.List | ast.Tuple) -> bool:
     """Return whether a literal list contains the items of another list."""
     return any(isinstance(item, ast.Starred) for item in node.elts)
@@ -529,13 +566,6 @@ def format_branches(test: ast.expr) -> tuple[str, str]:
     """Return the conditions of both branches of a test."""
     source = unparse_on_one_line(test)
     return f"if `{source}`", f"unless `{source}`"
-
-
-def shorten_text(text: str) -> str:
-    """Return a text, shortened if it is long, with a hash of the whole text."""
-    if len(text) <= _MAX_CHARACTERS:
-        return text
-    return f"{text[:_MAX_CHARACTERS]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
 
 
 def _format_call(node: ast.Call, part: Formatter) -> str:

@@ -90,6 +90,16 @@ def _find_unused_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> 
     yield from _find_replaced_values(nodes, names)
 
 
+def is_filled(tree: ast.AST, name: str) -> bool:
+    """Return whether a statement adds items to the list of a name."""
+    for node in ast.walk(tree):
+        owners = [call.func.value for call in _find_additions(node) if isinstance(call.func, ast.Attribute)]
+        target = node.target if isinstance(node, ast.AugAssign) else None
+        if any(isinstance(owner, ast.Name) and owner.id == name for owner in (*owners, target)):
+            return True
+    return False
+
+
 def _find_additions(node: ast.AST) -> Iterator[ast.Call]:
     """Yield the call if a node is a statement that adds items to a list of a name."""
     call = node.value if isinstance(node, ast.Expr) else None
