@@ -454,9 +454,9 @@ class ExpressionTexts:
                 return f"{owner.texts.text(function, depth + 1)}(...)[{part(node.slice)}]"
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
-            owner = part(node.value)
-            folder = find_parent(self.python, owner) if node.attr == "parent" else None
-            return f"{owner}.{node.attr}" if folder is None else folder
+            text = part(node.value)
+            folder = find_parent(self.python, text) if node.attr == "parent" else None
+            return f"{text}.{node.attr}" if folder is None else folder
         if isinstance(node, ast.BoolOp) and (operand := self._choose_operand(node)) is not None:
             return part(operand)
         choice = self._format_choice(node, part)
