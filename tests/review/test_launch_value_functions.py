@@ -8,6 +8,7 @@ from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
 HELPER = """import os
+from pathlib import Path
 from ament_index_python.packages import get_package_share_directory, get_package_share_path
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 import yaml
@@ -23,6 +24,11 @@ def config_file(package, name='arm.yaml'):
 
 def joined_file(package, name):
     return os.path.join(get_package_share_directory(package), FOLDER, name)
+
+
+def share_file(package, *parts):
+    folder = Path(get_package_share_directory(package))
+    return str(folder.joinpath('share', *parts))
 
 
 def source(package, name):
@@ -44,7 +50,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch_ros.actions import Node
-from arm.helper import common, config_file, joined_file, load, source
+from arm.helper import common, config_file, joined_file, load, share_file, source
 
 
 def generate_launch_description():
@@ -65,6 +71,9 @@ FOUND = "$(find-pkg-share arm)/"
         ("DeclareLaunchArgument('f', default_value=config_file('arm'))", f"default {FOUND}config/arm.yaml"),
         ("DeclareLaunchArgument('f', default_value=config_file('arm', name='b'))", f"default {FOUND}config/b"),
         ("DeclareLaunchArgument('f', default_value=joined_file('arm', 'b.yaml'))", f"default {FOUND}config/b.yaml"),
+        ("Node(package='arm', executable='n', name=share_file('arm', 'a', 'b'))", f"name {FOUND}share/a/b"),
+        ("Node(package='arm', executable='n', name=share_file('arm'))", f"name {FOUND}share"),
+        ("Node(package='arm', executable='n', name=share_file(*motor))", "name share_file(*motor)"),
         ("IncludeLaunchDescription(source('arm', 'a.launch.py'))", f"include of '{FOUND}launch/a.launch.py'"),
         ("Node(package='arm', executable='n', parameters=[common()])", "parameter rate 5"),
         ("Node(package='arm', executable='n', parameters=[common()])", f"parameter file {FOUND}config/a.yaml"),

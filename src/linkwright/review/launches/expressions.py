@@ -1,13 +1,16 @@
-"""Compare expressions in values of launch files, without their layout."""
+"""Compare and write expressions in values of launch files, without their layout."""
 
 from __future__ import annotations
 
 import ast
+import hashlib
 import re
 from copy import deepcopy
 
 from linkwright.packages.readers.python_values import parse_python_expression
 
+_MAX_CHARACTERS = 10_000
+"""The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _EXPRESSION = re.compile(r"\s*\$\(eval\s+(?P<text>.*)\)\s*", re.DOTALL)
 _SUBSTITUTION = re.compile(r"\$\([^()]*\)")
 _STRING_OR_BLANKS = re.compile(r"(?P<text>'[^']*'|\"[^\"]*\")|\s+")
@@ -80,3 +83,10 @@ def _make_membership(left: ast.expr, values: list[ast.expr]) -> ast.Compare:
     distinct = {ast.unparse(value): value for value in values}
     items = ast.List([distinct[text] for text in sorted(distinct)], ast.Load())
     return ast.Compare(left, [ast.In()], [items])
+
+
+def shorten_text(text: str) -> str:
+    """Return a text, shortened if it is long, with a hash of the whole text."""
+    if len(text) <= _MAX_CHARACTERS:
+        return text
+    return f"{text[:_MAX_CHARACTERS]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"

@@ -3,33 +3,32 @@
 from __future__ import annotations
 
 import ast
-import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PYTHON_COMPARISONS, PythonFile, called_name
 from linkwright.review.launches.chosen_texts import make_choice, quote_text
-from linkwright.review.launches.expressions import unparse_on_one_line
+from linkwright.review.launches.expressions import shorten_text, unparse_on_one_line
 from linkwright.review.launches.outlines import split_text, with_condition
 from linkwright.review.launches.python.conditions import SUBSTITUTIONS, read_tests
 from linkwright.review.launches.python.helpers import HelperFunctions, find_parameter_defaults
+from linkwright.review.launches.python.literals import LOOP_FUNCTIONS
 from linkwright.review.launches.python.names import is_chosen_value
 from linkwright.review.launches.python.substitution_texts import (
     Formatter,
+    find_parent,
     format_substitution,
     get_call_arguments,
     is_configurations,
     is_string,
     split_pieces,
 )
-from linkwright.review.launches.python.syntax import find_list_item
+from linkwright.review.launches.python.syntax import find_list_item, is_filled
 from linkwright.review.launches.python.text_templates import format_template, strip_conversion
 from linkwright.review.texts.list_changes import EMPTY
 
 _MAX_DEPTH = 30
-_MAX_CHARACTERS = 10_000
-"""The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
 _MAX_FUNCTION_DEPTH = 3
 """The maximum number of functions that return the value of each other."""
 _VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
@@ -82,16 +81,9 @@ class ExpressionTexts:
 
     def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
         """Return the texts of a loop pass, or None if the item does not fit the variables."""
-        if isinstance(target, ast.Name):
-            names, values = [target], [item]
-        elif isinstance(target, ast.Tuple) and isinstance(item.node, (ast.Tuple, ast.List)):
-            names = [name for name in target.elts if isinstance(name, ast.Name)]
-            values = [item.texts.resolve(value) for value in item.node.elts]
-            if not len(names) == len(target.elts) == len(values):
-                return None
-        else:
+        items_by_name = _assign_item(target, item)
+        if items_by_name is None:
             return None
-        items_by_name = {name.id: value for name, value in zip(names, values, strict=True)}
         bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
         return self.with_names(bindings, items_by_name)
 
@@ -140,10 +132,14 @@ class ExpressionTexts:
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         passed = dict(zip(names, call.args, strict=False))
+        count = len(passed)
+        if parameters.vararg is not None:
+            passed[parameters.vararg.arg] = ast.Tuple(call.args[count:], ast.Load())
+            count = len(call.args)
         passed |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
         defaults = find_parameter_defaults(function.node)
-        names += [argument.arg for argument in parameters.kwonlyargs]
-        is_complete = len(passed) == len(call.args) + len(call.keywords) and set(names) == passed.keys() | defaults
+        names += [argument.arg for argument in (*parameters.kwonlyargs, parameters.vararg) if argument is not None]
+        is_complete = count == len(call.args) and set(names) == passed.keys() | defaults.keys()
         if not is_complete:
             return None
         module_texts = ExpressionTexts(function.python, helpers=self._helpers, depth=self._depth + 1)
@@ -186,14 +182,43 @@ class ExpressionTexts:
         return isinstance(node, _VALUES)
 
     def find_items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a literal list or dictionary, or None for other expressions."""
+        """Return what a loop over a literal list or dictionary yields, or None for other expressions.
+
+        The loop may number or join the items with ``enumerate`` or ``zip``.
+        """
         value = self.resolve(node)
+        if isinstance(value.node, ast.Call) and called_name(value.node) in LOOP_FUNCTIONS:
+            return value.texts._find_loop_items(value.node)
         items = value.texts.find_dictionary_items(value.node)
         if items is not None:
             return items
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
+        if not value.node.elts and isinstance(node, ast.Name) and is_filled(self.python.tree, node.id):
+            return None
         return [value.texts.resolve(item) for item in value.node.elts]
+
+    def _find_loop_items(self, call: ast.Call) -> list[BoundExpression] | None:
+        """Return what ``enumerate`` or ``zip`` yields, or None if an argument is unknown."""
+        function = called_name(call)
+        if call.keywords or not call.args:
+            return None
+        lists = [self.find_items(argument) for argument in call.args]
+        known_lists = [items for items in lists if items is not None]
+        if len(known_lists) < len(lists):
+            return None
+        if function == "enumerate":
+            numbers = [BoundExpression(self, ast.Constant(number)) for number in range(len(known_lists[0]))]
+            known_lists = [numbers, *known_lists]
+        return [self._make_tuple(items, call) for items in zip(*known_lists, strict=False)]
+
+    def _make_tuple(self, items: Sequence[BoundExpression], location: ast.expr) -> BoundExpression:
+        """Return a tuple of expressions that may be written in several files."""
+        names = [f"*{number}" for number in range(len(items))]  # no other name is written so
+        bindings = {name: item.texts.text(item.node) for name, item in zip(names, items, strict=True)}
+        texts = self.with_names(bindings, dict(zip(names, items, strict=True)))
+        elements: list[ast.expr] = [ast.copy_location(ast.Name(name, ast.Load()), location) for name in names]
+        return BoundExpression(texts, ast.copy_location(ast.Tuple(elements, ast.Load()), location))
 
     def find_dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
         """Return what a loop over a dictionary or a view of it yields, or None."""
@@ -403,6 +428,9 @@ class ExpressionTexts:
         if template is not None:
             return template
         if isinstance(node, ast.Call):
+            unpacked = self._unpack_arguments(node)
+            if unpacked is not None:
+                return unpacked.texts._format(unpacked.node, depth)
             substitution = format_substitution(self.python, node, part)
             result = self._find_result(node) if substitution is None else None
             if result is not None:
@@ -426,7 +454,9 @@ class ExpressionTexts:
                 return f"{owner.texts.text(function, depth + 1)}(...)[{part(node.slice)}]"
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
-            return f"{part(node.value)}.{node.attr}"
+            text = part(node.value)
+            folder = find_parent(self.python, text) if node.attr == "parent" else None
+            return f"{text}.{node.attr}" if folder is None else folder
         if isinstance(node, ast.BoolOp) and (operand := self._choose_operand(node)) is not None:
             return part(operand)
         choice = self._format_choice(node, part)
@@ -438,6 +468,24 @@ class ExpressionTexts:
             )
             return f" if {unparse_on_one_line(node.test)} else ".join(values)
         return unparse_on_one_line(node)
+
+    def _unpack_arguments(self, call: ast.Call) -> BoundExpression | None:
+        """Return a call with the items of the lists that it unpacks (``*items``), or None for other calls."""
+        arguments: list[ast.expr] = []
+        bindings: dict[str, str] = {}
+        for argument in call.args:
+            value = self.resolve(argument.value) if isinstance(argument, ast.Starred) else None
+            if value is None or not isinstance(value.node, (ast.List, ast.Tuple)) or _unpacks(value.node):
+                arguments.append(argument)
+                continue
+            for item in value.node.elts:
+                name = f"*{len(bindings)}"  # no other name is written so
+                bindings[name] = value.texts.text(item)
+                arguments.append(ast.copy_location(ast.Name(name, ast.Load()), call))
+        if not bindings:
+            return None
+        unpacked = ast.copy_location(ast.Call(call.func, arguments, call.keywords), call)
+        return BoundExpression(self.with_names(bindings, {}), unpacked)
 
     def _format_choice(self, node: ast.expr, part: Formatter) -> str | None:
         """Return one of two texts that an argument chooses as an expression of XML launch files; None for others."""
@@ -492,17 +540,32 @@ class ExpressionTexts:
         return BoundExpression(self, node)
 
 
+def _assign_item(target: ast.expr, item: BoundExpression) -> dict[str, BoundExpression] | None:
+    """Return the values of the variables of a loop, by name, or None if the item does not fit them."""
+    if isinstance(target, ast.Name):
+        return {target.id: item}
+    if not isinstance(target, (ast.Tuple, ast.List)) or not isinstance(item.node, (ast.Tuple, ast.List)):
+        return None
+    if len(target.elts) != len(item.node.elts):
+        return None
+    values: dict[str, BoundExpression] = {}
+    for part, value in zip(target.elts, item.node.elts, strict=True):
+        assigned = _assign_item(part, item.texts.resolve(value))
+        if assigned is None:
+            return None
+        values |= assigned
+    return values
+
+
+def _unpacks(node: ast.List | ast.Tuple) -> bool:
+    """Return whether a literal list contains the items of another list."""
+    return any(isinstance(item, ast.Starred) for item in node.elts)
+
+
 def format_branches(test: ast.expr) -> tuple[str, str]:
     """Return the conditions of both branches of a test."""
     source = unparse_on_one_line(test)
     return f"if `{source}`", f"unless `{source}`"
-
-
-def shorten_text(text: str) -> str:
-    """Return a text, shortened if it is long, with a hash of the whole text."""
-    if len(text) <= _MAX_CHARACTERS:
-        return text
-    return f"{text[:_MAX_CHARACTERS]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
 
 
 def _format_call(node: ast.Call, part: Formatter) -> str:

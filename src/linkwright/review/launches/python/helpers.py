@@ -190,7 +190,7 @@ class HelperFunctions:
         file, node = definition
         if not isinstance(node, ast.FunctionDef):
             return None
-        is_simple = not node.decorator_list and node.args.vararg is None and node.args.kwarg is None
+        is_simple = not node.decorator_list and node.args.kwarg is None
         if not is_simple or not only_returns_value(node) or self._makes_actions(file, node):
             return None
         return Function(file, node)

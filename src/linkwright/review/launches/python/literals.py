@@ -6,12 +6,14 @@ import ast
 from collections.abc import Collection, Iterable
 from copy import copy
 
-from linkwright.packages.readers.python_values import PythonFile
+from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import Entry
 
 _MAX_DEPTH = 20
 _VIEW_METHODS = ("items", "keys", "values")
 """The methods of dictionaries whose results loops use."""
+LOOP_FUNCTIONS = ("enumerate", "zip")
+"""The functions whose results loops use."""
 _LITERAL_NODES = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
 
 
@@ -64,6 +66,8 @@ class Literals:
         elif isinstance(changed, ast.Call) and isinstance(changed.func, ast.Attribute):
             changed.func = copy(changed.func)
             changed.func.value = self._mark_literals(changed.func.value, depth)
+        elif isinstance(changed, ast.Call):
+            changed.args = [self._mark_literals(argument, depth) for argument in changed.args]
         return changed
 
 
@@ -117,6 +121,9 @@ class CoveredLiterals:
             return all(items)
         if isinstance(container, ast.Call) and isinstance(container.func, ast.Attribute):
             return self.add(container.func.value)
+        if isinstance(container, ast.Call):
+            items = [self.add(argument) for argument in container.args]
+            return all(items)
         return not _is_literal(self._python, node) or id(node) in self._shown
 
     def _add_item(self, key: ast.expr | None, value: ast.expr) -> bool:
@@ -134,12 +141,12 @@ class CoveredLiterals:
 def _find_container(python: PythonFile, node: ast.expr) -> ast.expr | None:
     """Return the container of an expression, or None if it has none.
 
-    A container is a dictionary, a list or a dictionary view.
+    A container is a dictionary, a list, a dictionary view, or a call of ``enumerate`` or ``zip``.
     """
     node = python.resolved(node)
     if isinstance(node, ast.Call):
         is_view = isinstance(node.func, ast.Attribute) and node.func.attr in _VIEW_METHODS and not node.args
-        return node if is_view else None
+        return node if is_view or called_name(node) in LOOP_FUNCTIONS else None
     return node if isinstance(node, (ast.Dict, ast.List, ast.Tuple)) else None
 
 

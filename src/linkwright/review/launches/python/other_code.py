@@ -8,8 +8,9 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, 
 from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launches.expressions import shorten_text
 from linkwright.review.launches.outlines import CodePart
-from linkwright.review.launches.python.expression_texts import ExpressionTexts, shorten_text
+from linkwright.review.launches.python.expression_texts import ExpressionTexts
 from linkwright.review.launches.python.failing_tests import find_failing_tests
 
 _COMBINING_CALLS = frozenset(

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable, Sequence
 
+from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
 from linkwright.review.texts.list_changes import EMPTY
@@ -22,6 +23,10 @@ _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution"
 _PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "dirname")
 _STRING_FUNCTIONS = (*_PATH_FUNCTIONS, "str", "getenv", "format")
 _TEXT_METHODS = ("lstrip", "removeprefix", "removesuffix", "replace", "rstrip", "strip")
+_OWN_FILE, _OWN_FOLDER = "__file__", "$(dirname)"
+"""The name of a Python file in itself, and the folder of the launch file."""
+_SAME_PATH_FUNCTIONS = ("abspath", "realpath", "normpath", "resolve", "absolute")
+"""The functions and methods that return another form of a path."""
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
@@ -45,13 +50,20 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
     if function in ("FindPackagePrefix", "get_package_prefix"):
         return f"$(find-pkg-prefix {part(first)})"
     if function == "ThisLaunchFileDir":
-        return "$(dirname)"
+        return _OWN_FOLDER
     if function == "find" and isinstance(node.func, ast.Attribute):
         owner = python.resolved(node.func.value)
         is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
         return part(owner) if is_share else None
     if function in ("perform", "__str__", "as_posix") and isinstance(node.func, ast.Attribute):
         return part(node.func.value)
+    if function in _SAME_PATH_FUNCTIONS:
+        path = part(node.func.value if first is None and isinstance(node.func, ast.Attribute) else first)
+        return path if path == _OWN_FILE or path.startswith(_OWN_FOLDER) else None
+    if function == "dirname":
+        return find_parent(python, part(first))
+    if function == "joinpath" and isinstance(node.func, ast.Attribute):
+        return _join_path([part(node.func.value), *map(part, arguments)])
     if function in _TEXT_METHODS and isinstance(node.func, ast.Attribute):
         return _format_text_method(part(node.func.value), function, node)
     if first is None:
@@ -83,6 +95,19 @@ def format_substitution(python: PythonFile, node: ast.Call, part: Formatter) -> 
     if function.endswith("LaunchDescriptionSource"):
         return "".join(map(part, split_pieces(python, first)))
     return None
+
+
+def find_parent(python: PythonFile, path: str) -> str | None:
+    """Return the folder around a path if it is the launch file or its folder, or None.
+
+    Args:
+        python: the file with the expression of the path.
+        path: the text of the path.
+    """
+    functions = (node.name for node in python.tree.body if isinstance(node, ast.FunctionDef))
+    if path == _OWN_FILE and LAUNCH_FUNCTION in functions:
+        return _OWN_FOLDER
+    return f"{path}/.." if path.startswith(_OWN_FOLDER) and path.rpartition("/")[2] in (_OWN_FOLDER, "..") else None
 
 
 def omit_program_search(command: str) -> str:

@@ -11,6 +11,13 @@ ADD_METHODS = ("add_action", "add_entity")
 """The methods that add an action to a launch description."""
 LIST_METHODS = ("append", "extend", "insert")
 """The methods that add items to a list."""
+_GROUPS = frozenset(
+    {
+        *("GroupAction", "RegisterEventHandler", "TimerAction"),
+        *("OnProcessExit", "OnProcessStart", "OnExecutionComplete", "OnStateTransition", "OnShutdown"),
+    }
+)
+"""The classes of actions that start other actions, and of the handlers of events that do."""
 _VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
 _DEFAULT_VALUE_KEYWORDS = ("name", "value")
 """The names of the arguments of the classes that set a value; the first item of each is what is set."""
@@ -44,34 +51,53 @@ _LAUNCH_PACKAGES = ("launch", "launch_ros")
 def find_unused_values(tree: ast.AST) -> frozenset[int]:
     """Return the identities of values that nothing uses.
 
-    These are the values of unused names with the items of their lists, items that are added to such a list, and values
-    that a later assignment replaces before they are used.
+    These are the values of unused names with the items of their lists and the actions of their groups and handlers,
+    items that are added to such a list, and values that a later assignment replaces before they are used. A name that
+    only an unused list, group or handler uses is unused, too.
     """
     nodes = list(ast.walk(tree))
     names = [node for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)]
+    while True:
+        unused = [part for item in _find_unused_values(nodes, names) for part in _flatten_lists(item)]
+        groups = [part for part in unused if isinstance(part, ast.Name) or _find_items(part)]
+        lost = {id(node) for group in groups for node in ast.walk(group)}
+        used = [name for name in names if id(name) not in lost]
+        if len(used) == len(names):
+            return frozenset(id(value) for value in unused)
+        names = used
+
+
+def _find_unused_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> Iterator[ast.expr]:
+    """Yield the values of names that are unused or get another value first, and what is added to unused lists.
+
+    Args:
+        nodes: the nodes of the syntax tree.
+        names: the nodes that use a name.
+    """
     additions = [call for node in nodes for call in _find_additions(node)]
     lists = {id(call.func.value) for call in additions if isinstance(call.func, ast.Attribute)}
     used = {node.id for node in names if id(node) not in lists}
     assignments = (node for node in nodes if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)))
-    unused = [
-        node.value
-        for node in assignments
-        if node.value is not None
-        and all(
-            isinstance(target, ast.Name) and target.id not in used
-            for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
-        )
-    ]
-    unused += (
-        argument
-        for call in additions
-        if isinstance(call.func, ast.Attribute)
-        and isinstance(call.func.value, ast.Name)
-        and call.func.value.id not in used
-        for argument in call.args
-    )
-    unused += _find_replaced_values(nodes, names)
-    return frozenset(id(value) for item in unused for value in _flatten_lists(item))
+    for node in assignments:
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        is_unused = all(isinstance(target, ast.Name) and target.id not in used for target in targets)
+        if node.value is not None and is_unused:
+            yield node.value
+    for call in additions:
+        owner = call.func.value if isinstance(call.func, ast.Attribute) else None
+        if isinstance(owner, ast.Name) and owner.id not in used:
+            yield from call.args
+    yield from _find_replaced_values(nodes, names)
+
+
+def is_filled(tree: ast.AST, name: str) -> bool:
+    """Return whether a statement adds items to the list of a name."""
+    for node in ast.walk(tree):
+        owners = [call.func.value for call in _find_additions(node) if isinstance(call.func, ast.Attribute)]
+        target = node.target if isinstance(node, ast.AugAssign) else None
+        if any(isinstance(owner, ast.Name) and owner.id == name for owner in (*owners, target)):
+            return True
+    return False
 
 
 def _find_additions(node: ast.AST) -> Iterator[ast.Call]:
@@ -82,10 +108,17 @@ def _find_additions(node: ast.AST) -> Iterator[ast.Call]:
 
 
 def _flatten_lists(node: ast.expr) -> Iterator[ast.expr]:
-    """Yield an expression and, if it is a list, its items."""
+    """Yield an expression and, if it is a list, a group or a handler, its items."""
     yield node
-    for item in node.elts if isinstance(node, (ast.List, ast.Tuple)) else ():
+    for item in _find_items(node):
         yield from _flatten_lists(item)
+
+
+def _find_items(node: ast.expr) -> list[ast.expr]:
+    """Return the items of a list, a group of actions or the handler of an event; none for other expressions."""
+    if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _GROUPS:
+        return [*node.args, *(keyword.value for keyword in node.keywords)]
+    return node.elts if isinstance(node, (ast.List, ast.Tuple)) else []
 
 
 def _find_replaced_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> Iterator[ast.expr]:
