@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
 MIXIN = """from launch_ros.actions import Node
@@ -343,3 +344,33 @@ def test_line_about_an_added_module_with_actions_names_its_functions(repository,
     repository.write({"arm/arm/single.py": MIXIN + "\n\ndef make(name):\n    return Mixin.viewer(name)\n"})
     review_subject = subject(compare(repository), "arm/arm/single.py")
     assert sentences(review_subject) == ["functions for launch files added: 'make', 'Mixin'"]
+
+
+def test_actions_of_a_launch_file_that_is_also_a_program_have_their_own_lines(repository, compare):
+    text = """import sys
+from launch import LaunchDescription, LaunchService
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="arm", executable="driver", parameters=[{"rate": 1}]),
+    ])
+
+
+def main():
+    service = LaunchService(argv=sys.argv[1:])
+    service.include_launch_description(generate_launch_description())
+    return service.run()
+
+
+if __name__ == "__main__":
+    main()
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: text})
+    repository.write({path: text.replace('"rate": 1', '"rate": 2')})
+    (change,) = subject(compare(repository), path).changes
+    assert str(change.sentence) == "node 'arm/driver': parameter rate 1 -> 2"
+    assert change.location is not None
+    assert change.location.line == 8

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.python.names import LaunchPythonFile
@@ -120,7 +121,10 @@ class HelperFunctions:
         return True
 
     def find_local_names(self, python: PythonFile) -> frozenset[str]:
-        """Return the names of a file's functions that make actions and are called in it."""
+        """Return the names of a file's functions that make actions and are called in it.
+
+        A file that is also a program calls the function that launch calls, which is none of them.
+        """
         names = self._names_by_file.get(python)
         if names is None:
             skipped = None if (guard := find_program_guard(python.tree)) is None else id(guard)
@@ -130,7 +134,9 @@ class HelperFunctions:
             definitions = (*_index_definitions(python).values(), *_index_nested_functions(python).values())
             functions = (node for node in definitions if isinstance(node, ast.FunctionDef))
             names = frozenset(
-                node.name for node in functions if node.name in called and self._makes_actions(python, node)
+                node.name
+                for node in functions
+                if node.name in called - {LAUNCH_FUNCTION} and self._makes_actions(python, node)
             )
             self._names_by_file[python] = names
         return names
@@ -138,6 +144,8 @@ class HelperFunctions:
     def find(self, python: PythonFile, call: ast.Call) -> Function | None:
         """Return the called function if it is in the repository and makes actions, or None."""
         name = called_name(call)
+        if name == LAUNCH_FUNCTION and name in _index_definitions(python):
+            return None
         key = python, name
         if key not in self._functions:
             self._functions[key] = self._find(python, name)
