@@ -108,16 +108,30 @@ def test_other_names_and_comments_do_not_use_a_removed_package(repository, compa
     assert "still used" not in str(change.reason)
 
 
+INSTALLS = "find_package(ament_cmake REQUIRED)\ninstall(DIRECTORY config DESTINATION share/driver)\n"
+
+
 @pytest.mark.parametrize(
     ("files", "is_breaking"),
     [
         ({"driver/CMakeLists.txt": "project(driver)\nfind_package(ament_cmake REQUIRED)\n"}, False),
         ({"driver/CMakeLists.txt": "project(driver)\nadd_executable(driver a.cpp)\n"}, True),
-        ({"driver/CMakeLists.txt": "find_package(ament_cmake REQUIRED)\n", "driver/package.xml": MANIFEST}, True),
+        ({"driver/CMakeLists.txt": INSTALLS, "driver/package.xml": MANIFEST}, True),
+        ({"driver/CMakeLists.txt": "find_package(ament_cmake REQUIRED)\n", "driver/package.xml": MANIFEST}, False),
+        (
+            {
+                "driver/CMakeLists.txt": "find_package(ament_cmake REQUIRED)\n",
+                "driver/package.xml": MANIFEST,
+                "start.sh": "ros2 run driver driver --params-file driver/config/arm.yaml\n",
+            },
+            True,
+        ),
         ({}, True),
     ],
 )
-def test_folder_with_a_build_file_but_no_manifest_offers_nothing(repository, compare, files, is_breaking):
+def test_file_that_is_not_installed_breaks_nothing_unless_another_file_names_it(
+    repository, compare, files, is_breaking
+):
     path = "driver/config/arm.yaml"
     repository.commit({**files, path: FILES["arm_driver/config/arm.yaml"]})
     repository.write({path: None})

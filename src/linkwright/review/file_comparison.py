@@ -17,13 +17,17 @@ from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.interfaces import find_syntax_errors
 from linkwright.review.files.parameters.generated import generates_code
 from linkwright.review.files.parameters.yaml_values import compose_yaml, read_yaml_text
-from linkwright.review.installed_paths import is_without_manifest, keeps_installed_path, keeps_type
+from linkwright.review.installed_paths import (
+    is_without_manifest,
+    keeps_installed_path,
+    keeps_type,
+)
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
 from linkwright.review.launches.python.undefined import find_undefined_names
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names
 from linkwright.review.texts.folders import without_folder
-from linkwright.review.users.unused_test_files import is_test_file, is_unused_test_file
+from linkwright.review.users.unused_test_files import is_test_file, is_unused_file, is_unused_test_file
 from linkwright.review.versions import Version, Versions
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xacro.cache import read_document
@@ -32,6 +36,14 @@ from linkwright.xmltree.reader import read_bytes
 _TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
 """The kinds of files whose changes are not breaking if only tests use the files."""
 
+_INSTALLED_KINDS = frozenset(
+    {
+        *(SubjectKind.DESCRIPTION, SubjectKind.WORLD, SubjectKind.TEMPLATE, SubjectKind.SEMANTICS),
+        *(SubjectKind.LAUNCH_FILE, SubjectKind.BEHAVIOR_TREE, SubjectKind.PARAMETERS, SubjectKind.MAP),
+        SubjectKind.RVIZ,
+    }
+)
+"""The kinds of files that programs and users find in the share folder of their package."""
 _COPIED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.RVIZ)
 """The kinds of added files that, as copies of other files, are shown without contents."""
 _MIN_COPIED_CHARACTERS = 100
@@ -49,8 +61,10 @@ def compare_file(
         new_path: the path in the new version; None for a removed file.
         drawings: the kinds of drawings of robots that look different.
     """
-    if old_path is not None and old_path != new_path and _is_without_users(versions.old, rule, old_path):
-        rule = replace(rule, removal_reason=None)
+    if old_path is not None and old_path != new_path:
+        is_unused = rule.kind in _INSTALLED_KINDS and is_unused_file(versions, old_path)
+        if is_unused or _is_without_users(versions.old, rule, old_path):
+            rule = replace(rule, removal_reason=None)
     is_test = rule.kind in _TESTED_KINDS and old_path is not None and is_test_file(versions.old, old_path)
     if old_path is None or new_path is None:
         rule = replace(rule, removal_reason=None) if is_test else rule

@@ -1,4 +1,4 @@
-"""Find files of tests, which nothing else uses."""
+"""Find files of tests, which nothing else uses, and other files without users."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.files.build.cmake_branches import iterate_conditional_commands
-from linkwright.review.installed_paths import find_targets
+from linkwright.review.installed_paths import find_installed_paths, find_targets
 from linkwright.review.users.installed_readers import READER_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -42,7 +42,18 @@ def is_unused_test_file(versions: Versions, old_path: str, new_path: str) -> boo
     """Return whether a renamed file belongs to tests, is not installed, and no file has its old name any more."""
     if not is_test_file(versions.old, old_path):
         return False
-    if versions.new.package_of(new_path) != versions.old.package_of(old_path):
+    is_same_package = versions.new.package_of(new_path) == versions.old.package_of(old_path)
+    return is_same_package and not _is_named(versions.new, old_path)
+
+
+def is_unused_file(versions: Versions, old_path: str) -> bool:
+    """Return whether a removed or renamed file was certainly not installed, and no file has its name any more."""
+    package = versions.old.package_of(old_path)
+    if package is None or find_installed_paths(versions.old, package, old_path) != frozenset():
         return False
-    name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(old_path).name)}(?![\w.-])")
-    return not any(name.search(versions.new.text(path)) for path in versions.new.paths(READER_SUFFIXES))
+    return not _is_named(versions.new, old_path)
+
+
+def _is_named(version: Version, path: str) -> bool:
+    name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(path).name)}(?![\w.-])")
+    return any(name.search(version.text(reader)) for reader in version.paths(READER_SUFFIXES))
