@@ -40,3 +40,20 @@ def test_a_frame_that_the_program_only_looks_up_breaks_nobody(repository, compar
     repository.write({path: LAUNCH.replace(old, new)})
     (change,) = subject(compare(repository), path).changes
     assert (None if change.reason is None else str(change.reason)) == reason
+
+
+@pytest.mark.parametrize(
+    ("program", "reason"),
+    [
+        ('pkg="rtabmap_slam" exec="rtabmap"', None),
+        ('pkg="rtabmap_viz" exec="rtabmap_viz"', None),
+        ('pkg="rtabmap_odom" exec="icp_odometry"', REASON),  # it publishes the transform of the frame
+    ],
+)
+def test_a_frame_that_a_well_known_program_only_looks_up_breaks_nobody(repository, compare, program, reason):
+    manifest, path = PACKAGE_XML.replace("arm_description", "arm"), "arm/launch/arm.launch.xml"
+    launch = f'<launch><node {program}><param name="frame_id" value="base_link"/></node></launch>\n'
+    repository.commit({"arm/package.xml": manifest, path: launch})
+    repository.write({path: launch.replace("base_link", "footprint")})
+    (change,) = subject(compare(repository), path).changes
+    assert (None if change.reason is None else str(change.reason)) == reason

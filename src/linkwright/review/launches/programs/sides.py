@@ -71,6 +71,11 @@ _CONTROLLER_MANAGER = "controller_manager/ros2_control_node"
 _KEY, _QUOTED_WORD = re.compile(r"^\s*(\w+):", re.MULTILINE), re.compile(r"[\"'](\w+)[\"']")
 _KEY_PATTERNS = {".yaml": _KEY, ".yml": _KEY, ".py": _QUOTED_WORD, ".xml": _QUOTED_WORD, ".launch": _QUOTED_WORD}
 """The names of controllers in parameter files and, for spawners, in launch files, by suffix."""
+_LOOKED_UP_FRAMES = dict.fromkeys(
+    ("rtabmap_ros/rtabmap", "rtabmap_slam/rtabmap", "rtabmap_ros/rtabmapviz", "rtabmap_viz/rtabmap_viz"),
+    frozenset({"frame_id"}),
+)
+"""The parameters of well-known programs with the frame of the robot, whose pose they look up (``CoreWrapper.cpp``)."""
 
 
 class Side(Enum):
@@ -132,13 +137,17 @@ def is_name_of_known_node(name: str) -> bool:
 
 
 def only_looks_up(program: str, parameter: str, root: Path | None) -> bool:
-    """Return whether the sources of a node use the value of a parameter only as the name of a frame to look up.
+    """Return whether a node uses the value of a parameter only as the name of a frame to look up.
+
+    The sources in the repository show this, or the node is well known.
 
     Args:
         program: the package and the executable of the node.
         parameter: the name of the parameter.
         root: the folder of the repository, which may have the sources; None if it is unknown.
     """
+    if parameter in _LOOKED_UP_FRAMES.get(program, ()):
+        return True
     files = () if root is None else _list_sources(root, program.partition("/")[0])
     names = (item for file in files for item in read_source_names(file).default_names)
     return {item.kind for item in names if item.parameter.lstrip("~/.") == parameter} == {NameKind.FRAME_LOOKUP}
