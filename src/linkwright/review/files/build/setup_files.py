@@ -20,7 +20,7 @@ SETUP_FILE = "setup.py"
 _FIND_PACKAGES = "find_packages"
 _CATKIN_SETUP = "generate_distutils_setup"
 _COMPARED_ARGUMENTS = frozenset({"entry_points", "data_files", "packages"})
-_SHOWN_ARGUMENTS = frozenset({"name", "version", "python_requires", "license"})
+_SHOWN_ARGUMENTS = frozenset({"name", "version", "description", "python_requires", "license"})
 """The arguments of ``setup`` whose string values are shown."""
 
 
