@@ -54,7 +54,7 @@ from linkwright.review.sources.hardware_interfaces import find_hardware_interfac
 from linkwright.review.sources.hardware_parameters import find_hardware_parameters
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import extract_pattern, find_format
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import (
     find_helper_calls,
@@ -283,6 +283,7 @@ class _Reader:
                 declared = declared or find_type_of_default(self._text, texts)
                 declared = declared or self._variable_types.find_passed(offsets[1])
                 details += [(Detail.VALUE_TYPE, declared)] if declared else []
+                details += [] if texts else [(Detail.DEFAULT, NO)]
                 details += find_range(self._text, call.start, texts)
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
