@@ -143,7 +143,7 @@ class _Reader:
         self._read_members()
         elements = list(read_elements(text))
         hardware_parameters = list(find_hardware_parameters(text))
-        self._read_helper_calls({item.start for item in (*elements, *hardware_parameters)})
+        self._read_helper_calls({item.start for item in elements} | {item.start for item in hardware_parameters})
         for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
