@@ -36,6 +36,21 @@ def test_an_added_header_is_told_if_it_is_installed(repository, compare, install
     assert [line for line in lines if "Leg" in line or "leg" in line] == expected
 
 
+@pytest.mark.parametrize(("install", "expected"), [(INSTALL, ["functions added: 'lift' (double)"]), ("", [])])
+def test_functions_outside_of_classes_of_an_added_header_are_told(repository, compare, install, expected):
+    files = {
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+        "arm/CMakeLists.txt": BUILD.format(install=install),
+        "arm/include/arm/arm.hpp": "#pragma once\n",
+    }
+    repository.commit(files)
+    repository.write(
+        {"arm/include/arm/leg.hpp": HEADER.replace("};\n}", "};\nnamespace motion {\nint lift(double);\n}\n}")}
+    )
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert [line for line in lines if "functions" in line] == expected
+
+
 @pytest.mark.parametrize("guard", ["#pragma once\n{}", "#ifndef LEG_H\n#define LEG_H\n{}\n#endif  // LEG_H\n", "{}"])
 def test_header_of_comments_has_no_code(repository, compare, guard):
     code = "class Leg {};\n#define LEGS 4\n"

@@ -60,6 +60,21 @@ def test_a_parameter_may_become_required(repository, compare):
     assert breaking(compare(repository)) == ["parameter 'mass': required no -> yes"]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", ', ""', "parameter 'tool': default - -> \"\""),
+        (", 4", "", "parameter 'tool': default 4 -> -"),
+    ],
+)
+def test_a_declaration_may_get_or_lose_its_default(repository, compare, old, new, expected):
+    texts = [SOURCE.format(f'  node->declare_parameter("tool"{default});\n') for default in (old, new)]
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": texts[0]})
+    repository.write({"arm/src/arm.cpp": texts[1]})
+    (found,) = compare(repository).subjects
+    assert expected in sentences(found)
+
+
 def test_the_value_that_a_variable_gets_without_its_parameter_is_the_default(repository, compare):
     code = '  if (!nh.getParam("mass", mass_)) {\n    mass_ = 1.5;\n    log();\n  }\n'
     repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format(code)})

@@ -113,7 +113,16 @@ def test_function_of_a_header_is_compared_by_what_its_callers_see(repository, co
     assert breaking(result) == (lines if is_breaking else [])
 
 
-@pytest.mark.parametrize(("old", "new"), [("int32_t", "size_t"), ("const std::uint8_t&", "int"), ("long", "int")])
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("int32_t", "size_t"),
+        ("const std::uint8_t&", "int"),
+        ("long", "int"),
+        ("uint16_t", "float"),
+        ("unsigned", "const double&"),
+    ],
+)
 def test_a_parameter_of_another_integer_type_takes_the_old_arguments(old, new):
     assert accepts_type(normalize_type(old), normalize_type(new))
     assert not accepts_type(normalize_type(old), "std::string")

@@ -212,3 +212,11 @@ def test_parameter_of_ros_1_with_a_partly_known_name_is_told(repository, compare
     (found,) = compare(repository).subjects
     line = "parameters with computed names added: 'joint->name() + \"/offset\"' (0.0)"
     assert (line in sentences(found)) == is_told
+
+
+def test_local_variables_of_one_declaration_have_defaults(repository, compare):
+    code = 'int main() {\n  int left = 0, right = 1;\n  nh.getParam("left", left);\n  nh.getParam("right", right);\n}\n'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": code})
+    repository.write({"arm/src/arm.cpp": code.replace("left = 0, right = 1", "left = 1, right = 0")})
+    found = sentences(subject(compare(repository), "arm/src/arm.cpp"))
+    assert found[:2] == ["parameter 'left': default 0 -> 1", "parameter 'right': default 1 -> 0"]

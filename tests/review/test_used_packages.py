@@ -27,6 +27,7 @@ def find_sentences(repository, compare, old: dict[str, str], new: dict[str, str]
     ("old", "new", "expected"),
     [
         (["a/b.h"], ["a/b.h", "bag_cpp/writer.hpp"], ["packages included for the first time: 'bag_cpp'"]),
+        (["a/b.h"], ["a/b.h", "google/protobuf/message.h"], ["packages included for the first time: 'protobuf'"]),
         (["a/b.h", "bag_cpp/writer.hpp"], ["a/b.h"], ["packages no longer included: 'bag_cpp'"]),
         (["a/b.h"], ["a/b.h", "nav_msgs/msg/path.hpp", "nav_msgs/msg/grid.hpp"],
          ["packages included for the first time: 'nav_msgs'"]),

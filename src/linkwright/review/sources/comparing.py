@@ -306,7 +306,8 @@ class _SourcePair(PairedNames):
             return
         if kind in (NameKind.FUNCTION, NameKind.MEMBER) and self.file.old_path is None:
             is_module = self.file.path.endswith(PYTHON_SUFFIX)
-            added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
+            is_told = is_module or kind is NameKind.FUNCTION
+            added = [item for item in added if is_told and item.name.isidentifier() and item.name != _MAIN]
         if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_added_names(added))
             reason = self._find_required_reason(added) if self.file.old_path is not None else None

@@ -51,9 +51,10 @@ from linkwright.review.sources.cpp_declarations import read_declarations
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.gazebo_topics import find_gazebo_topics
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
+from linkwright.review.sources.hardware_parameters import find_hardware_parameters
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import extract_pattern, find_format
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import (
     find_helper_calls,
@@ -141,15 +142,17 @@ class _Reader:
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
         self._read_members()
         elements = list(read_elements(text))
-        self._read_helper_calls({element.start for element in elements})
+        hardware_parameters = list(find_hardware_parameters(text))
+        self._read_helper_calls({item.start for item in elements} | {item.start for item in hardware_parameters})
         for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for topic in find_gazebo_topics(text, self._headers, self._texts.evaluate):
             self._add(topic.kind, topic.name, topic.begin, topic.end, topic.type)
-        for found in (*find_hardware_interfaces(text, self._texts.evaluate), *find_yaml_keys(text, self._headers)):
+        interfaces = find_hardware_interfaces(text, self._texts.evaluate)
+        for found in (*interfaces, *hardware_parameters, *find_yaml_keys(text, self._headers)):
             details = ((Detail.REQUIRED, YES),) if found.is_required else ()
-            default = found.variable and self._initial_values.find_default(found.variable, found.start)
+            default = parse_literal(found.variable) or self._initial_values.find_default(found.variable, found.start)
             self._add(found.kind, found.name, found.start, found.end, default or "", details)
         for declared in find_declared_groups(text):
             details = ((Detail.VALUE_TYPE, declared.type),) if declared.type else ()
@@ -280,6 +283,7 @@ class _Reader:
                 declared = declared or find_type_of_default(self._text, texts)
                 declared = declared or self._variable_types.find_passed(offsets[1])
                 details += [(Detail.VALUE_TYPE, declared)] if declared else []
+                details += [] if texts else [(Detail.DEFAULT, NO)]
                 details += find_range(self._text, call.start, texts)
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
@@ -405,10 +409,10 @@ class _Reader:
                 self._names.expressions.append(self._make_name(member.kind, expression, member.type, begin, end))
                 return
 
-    def _read_helper_calls(self, element_starts: Collection[int]) -> None:
+    def _read_helper_calls(self, known_starts: Collection[int]) -> None:
         """Add the parameters that functions of the repository read.
 
-        The name is one of the first two arguments. Elements of SDF at the given offsets are left out.
+        The name is one of the first two arguments. Names at the given offsets are left out.
         """
         own = self._caller_names.helper_names
         for call in find_helper_calls(self._text):
@@ -418,8 +422,8 @@ class _Reader:
             arguments = list(find_arguments(self._text, call.start))
             for index, (begin, end) in enumerate(arguments[:2]):
                 literal = TEXT.fullmatch(self._text[begin:end])
-                is_element = literal is not None and begin + literal.start("text") in element_starts
-                if literal is not None and not is_element and is_parameter_name(literal["text"]):
+                is_known = literal is not None and begin + literal.start("text") in known_starts
+                if literal is not None and not is_known and is_parameter_name(literal["text"]):
                     values = (parse_literal(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
                     default = next((value for value in values if value is not None), "")
                     read_type = self._variable_types.find_passed(end) if kind is NameKind.PARAMETER else ""

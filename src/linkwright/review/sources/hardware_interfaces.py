@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterator
 
 from linkwright.review.sources.cpp.text import find_arguments
+from linkwright.review.sources.hardware_parameters import HARDWARE
 from linkwright.review.sources.names import FoundName, NameKind
 from linkwright.review.sources.parameter_defaults import split_sum
 from linkwright.review.texts.comments import without_comments
@@ -25,19 +26,11 @@ _NUMBER = re.compile(r"\s*(?:std::)?to_string\s*\(.*\)\s*", re.DOTALL)
 _VARIABLE = re.compile(r"\s*[A-Za-z_][\w.:]*(?:(?:\[[^\[\]]*\]|->|\.|\.at\([^()]*\))[\w.:]*)*\s*")
 _TYPED = re.compile(r"\s*(?:const\b|(?:std::)?string\b\s*&)")
 """The beginning of a parameter in the declaration of a constructor."""
-_PARAMETER = re.compile(
-    r"\b(?:hardware_parameters|parameters)\s*(?:\[\s*|\.\s*(?P<call>at|find|count|contains)\s*\(\s*)"
-    r"\"(?P<name>[\w.-]+)\"\s*[\])]"
-)
-"""A parameter that hardware reads from its description, such as ``info_.hardware_parameters["port"]``."""
-_HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
 _ELEMENT = re.compile(
     r"\binfo_?\s*\.\s*(?P<list>sensors|gpios|transmissions)\s*"
     r"(?:\[\s*\d+\s*\]|\.\s*(?:at\s*\(\s*\d+|(?:front|back)\s*\()\s*\))"
 )
 """An element of the description that hardware reads at a fixed index, such as ``info_.sensors[0]``."""
-_CHECKS = frozenset({"find", "count", "contains"})
-_MAX_BRANCH_CHARACTERS = 250
 _MIN_ARGUMENTS = 3
 """The minimum number of arguments of an interface that a list constructs: two names and a variable."""
 _DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
@@ -45,7 +38,7 @@ _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
 def find_hardware_interfaces(text: str, evaluate: Callable[[int, int], str | None]) -> Iterator[FoundName]:
-    """Yield the interfaces and the parameters of hardware in a C++ source without comments.
+    """Yield the interfaces of hardware and the elements that it reads, in a C++ source without comments.
 
     Unknown parts of the names of interfaces are marked: ``<name>/position``.
 
@@ -66,18 +59,10 @@ def find_hardware_interfaces(text: str, evaluate: Callable[[int, int], str | Non
             name = _read_name(text, begin, end, evaluate)
             if "/" in name:
                 yield FoundName(NameKind.CLAIMED_INTERFACE, name, begin, end)
-    reads = list(_PARAMETER.finditer(text)) if _HARDWARE.search(text) else []
-    optional = {match["name"] for match in reads if match["call"] != "at"}
-    is_caught = re.search(r"\bcatch\b", text) is not None
-    for match in reads:
-        is_required = match["name"] not in optional and not is_caught
-        name, start, end = match["name"], match.start("name"), match.end("name")
-        variable = "" if match["call"] not in _CHECKS else _find_variable(text, match.end(), name)
-        yield FoundName(NameKind.HARDWARE_PARAMETER, name, start, end, is_required=is_required, variable=variable)
-    for match in _ELEMENT.finditer(text) if _HARDWARE.search(text) else ():
+    for match in _ELEMENT.finditer(text) if HARDWARE.search(text) else ():
         is_checked = re.search(rf"\b{match['list']}\s*\.\s*(?:size|empty)\s*\(", text) is not None
         name = f"<{match['list'].removesuffix('s')}>"
-        is_required = not is_checked and not is_caught
+        is_required = not is_checked and re.search(r"\bcatch\b", text) is None
         yield FoundName(NameKind.HARDWARE_ELEMENT, name, *match.span("list"), is_required=is_required)
 
 
@@ -99,14 +84,6 @@ def find_description_without(version: Version, classes: Collection[str], element
             if is_complete and any(f"{element[:-1]} " not in code for element in elements):
                 return path
     return None
-
-
-def _find_variable(text: str, position: int, name: str) -> str:
-    """Return the variable that gets a parameter behind a check for it; empty if there is none."""
-    value = rf"->\s*second\b|parameters\s*(?:\[|\.\s*at\s*\()\s*\"{re.escape(name)}\""
-    assigned = re.compile(rf"\b(\w+)\s*=(?!=)[^;=]*(?:{value})[^;]*;")
-    match = assigned.search(text, position, position + _MAX_BRANCH_CHARACTERS)
-    return "" if match is None else match[1]
 
 
 def _read_name(text: str, begin: int, end: int, evaluate: Callable[[int, int], str | None]) -> str:

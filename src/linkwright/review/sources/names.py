@@ -142,7 +142,7 @@ class FoundName(NamedTuple):
         end: the end of the name.
         base: the base class as which programs load an exported class; empty if there is none.
         is_required: whether a program fails without the parameter.
-        variable: the variable that keeps its value without the parameter; empty if it is unknown.
+        variable: the variable or literal that is the value without the parameter; empty if it is unknown.
     """
 
     kind: NameKind

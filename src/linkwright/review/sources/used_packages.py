@@ -18,7 +18,10 @@ from linkwright.review.sources.reading import is_program_text, try_read_source, 
 from linkwright.review.versions import TEST_FOLDERS, Version
 
 _BLOCK_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
-_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<name>[\w.+-]+/[^">\n]+)[">]', re.MULTILINE)
+_INCLUDE = re.compile(
+    r'^[ \t]*#[ \t]*include[ \t]*["<](?:google/(?=\w+/))?(?P<name>[\w.+-]+/[^">\n]+)[">]', re.MULTILINE
+)
+"""An included header. The folder ``google`` has those of several libraries, such as ``google/protobuf/message.h``."""
 _IMPORT = re.compile(
     r"^[ \t]*(?:from[ \t]+(?P<source>[A-Za-z_]\w*)[\w.]*[ \t]+import\b|import[ \t]+(?P<names>[\w., \t]+))", re.MULTILINE
 )

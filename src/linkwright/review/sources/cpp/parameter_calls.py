@@ -6,22 +6,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from linkwright.review.sources.cpp.branches import FAILURE, MAX_CONDITION_CHARACTERS, is_in_branch, read_branch
 from linkwright.review.sources.cpp.calls import Call
 from linkwright.review.sources.cpp.text import find_closing_bracket
 from linkwright.review.sources.cpp.values import VARIABLE, InitialValues, parse_literal
 
 _IF = re.compile(r"\bif\s*(?=\()")
 _NEGATED = re.compile(r"!\s*(?:\w+\s*(?:\(\s*\))?\s*(?:\.|->|::)\s*)*\Z")
-_EXIT = re.compile(
-    r"\bthrow\b|\breturn\s+(?:false|-\s*1|EXIT_FAILURE|[\w:]*\b(?:ERROR|FAILURE))\s*;|\b(?:exit|abort|shutdown)\s*\("
-)
-_MAX_CONDITION_CHARACTERS = 400
-_MAX_FUNCTION_CHARACTERS = 20_000
 _READ_ARGUMENTS = 2
 """The number of arguments of ``getParam``: the name and the variable for the value."""
 _LITERAL = r"-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\""
-_BRACE = re.compile(r"[{}]")
-_CONDITIONAL_HEAD = re.compile(r"\b(?:if|else|case|switch|catch)\b")
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
 _DESCRIPTOR = re.compile(r"\s*(?:\w+\s*(?:::|\.)\s*)*\w*[dD]escriptor\w*\s*(?:\{.*\}\s*)?\Z", re.DOTALL)
 """An argument of a declaration that describes the parameter, and is not its default."""
@@ -108,9 +102,9 @@ def is_required_parameter(text: str, call: Call, arguments: Sequence[str]) -> bo
         arguments: the arguments behind the name.
     """
     if call.function in _TYPED_CALLS and call.type and all(map(_DESCRIPTOR.match, arguments)):
-        return re.search(r"\bcatch\b", text) is None and not _is_in_branch(text, call.start)
+        return re.search(r"\bcatch\b", text) is None and not is_in_branch(text, call.start)
     branch = _find_branch_of_failure(text, call)
-    return _EXIT.search(branch) is not None and not _is_in_branch(text, call.start)
+    return FAILURE.search(branch) is not None and not is_in_branch(text, call.start)
 
 
 def find_type_of_default(text: str, arguments: Sequence[str]) -> str:
@@ -149,7 +143,7 @@ def _find_branch_of_failure(text: str, call: Call) -> str:
     """Return the code that runs if a call does not find its parameter; empty if that is not certain."""
     if call.function not in ("getParam", "get_parameter"):
         return ""
-    begin = max(0, call.start - _MAX_CONDITION_CHARACTERS)
+    begin = max(0, call.start - MAX_CONDITION_CHARACTERS)
     conditions = [match.end() for match in _IF.finditer(text, begin, call.start)]
     if not conditions:
         return ""
@@ -157,29 +151,7 @@ def _find_branch_of_failure(text: str, call: Call) -> str:
     end = find_closing_bracket(text, start)
     if not start < call.start < end or "&&" in text[start:end] or not _NEGATED.search(text, start, call.start):
         return ""
-    return _read_branch(text, end + 1)
-
-
-def _is_in_branch(text: str, position: int) -> bool:
-    """Return whether a place is in a block that a condition opens."""
-    depth = 0
-    for match in reversed(list(_BRACE.finditer(text, max(0, position - _MAX_FUNCTION_CHARACTERS), position))):
-        depth += 1 if match[0] == "}" else -1
-        if depth < 0:
-            depth = 0
-            head = re.split(r"[;{}]", text[max(0, match.start() - _MAX_CONDITION_CHARACTERS) : match.start()])[-1]
-            if _CONDITIONAL_HEAD.search(head):
-                return True
-    return False
-
-
-def _read_branch(text: str, start: int) -> str:
-    """Return the statement or block behind a condition."""
-    begin = start + len(text[start:]) - len(text[start:].lstrip())
-    if text.startswith("{", begin):
-        return text[begin : find_closing_bracket(text, begin)]
-    end = text.find(";", begin)
-    return text[begin : end + 1]
+    return read_branch(text, end + 1)
 
 
 def find_table_names(text: str, expression: str, position: int) -> Iterator[TableName]:

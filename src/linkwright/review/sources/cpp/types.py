@@ -7,7 +7,8 @@ import re
 _ARITHMETIC = ("bool", "char", "short", "int", "long", "long long", "float", "double", "long double")
 """The arithmetic types, each of which takes all values of the previous ones, or nearly so."""
 _INTEGERS = re.compile(r"(?:unsigned )?(?:char|short|int|long|long long)|(?:std::)?(?:u?int(?:8|16|32|64)_t|size_t)")
-"""The integer types. A call with a value of one also builds with another."""
+"""The integer types. A call with a value of one also builds with another, and with a floating-point type."""
+_REAL_NUMBERS = ("float", "double", "long double")
 _KINDS = re.compile(r"\b(?:struct|class|enum|typename)\s+(?=\w)")
 _EAST_CONST = re.compile(r"^(?P<type>[\w:]+(?:<.*>)?)\s+const\b")
 _INNER_EAST_CONST = re.compile(r"(?<=[<,(])([\w:]+) const(?=[>,*&)])")
@@ -60,7 +61,7 @@ def accepts_type(old: str, new: str) -> bool:
     values = [match["type"] if (match := _REFERENCE.fullmatch(text)) else text for text in (old, new)]
     if is_same_type(*values) or (old in _ARITHMETIC and new in _ARITHMETIC[_ARITHMETIC.index(old) :]):
         return True
-    if all(_INTEGERS.fullmatch(value) for value in values):
+    if _INTEGERS.fullmatch(values[0]) and (_INTEGERS.fullmatch(values[1]) or values[1] in _REAL_NUMBERS):
         return True
     if re.search(r"[*&]$", old) and old[-1] == new[-1:] and not old.startswith("const ") and not old.endswith("&&"):
         return is_same_type(f"const {old}", new)

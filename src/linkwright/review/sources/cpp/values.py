@@ -188,7 +188,7 @@ class InitialValues:
             return None
         start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
         name = re.escape(match["name"])
-        assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*;)|>>\s*{name}\b")
+        assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*[;,])|>>\s*{name}\b")
         if value.startswith("["):
             assigned = re.compile(rf"(?<!\w){name}\s*(?:=(?!=)|\[|\.\s*(?!size|empty|at|data|begin|end)\w+\s*\()")
         read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
