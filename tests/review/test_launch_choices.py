@@ -167,6 +167,34 @@ def generate_launch_description():
     assert line.startswith("other code changed in 'read()', 'write()', such as ")
 
 
+def test_settings_that_code_changes_are_told_with_their_conditions(repository, compare):
+    code = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from launch_ros.actions import Node
+
+def setup(context):
+    values = {'rate': 5}
+    names = []
+    fast = context.launch_configurations['fast']
+    if fast == '1':
+        values['gain'] = 2
+    node = Node(package='arm', executable='drive', parameters=[values], remappings=names)
+    return [node]
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup)])
+"""
+    path = "arm/launch/arm.launch.py"
+    new = code.replace("values['gain'] = 2", "names.append(('image', 'eye'))\n    else:\n        values['slow'] = True")
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code})
+    repository.write({path: new.replace("'fast'", "'quick'")})
+    line = next(line for line in sentences(subject(compare(repository), path)) if line.startswith("other code"))
+    assert line == (
+        "other code changed in 'setup()', such as `if fast == '1': names.append(('image', 'eye'))` added, "
+        "`if not (fast == '1'): values['slow'] = True` added, `if fast == '1': values['gain'] = 2` removed"
+    )
+
+
 RETURNING = """from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 from launch_ros.actions import Node

@@ -66,6 +66,13 @@ def test_added_launch_file_names_everything_before_details(repository, compare):
     assert sentence.endswith("argument 'side' (default left, unused)")
 
 
+def test_all_parameter_files_of_an_added_node_are_shown(review_changes):
+    files = [f"$(find arm_navigation)/config/{name}_costmap_params.yaml" for name in ("common", "global", "local")]
+    loads = "".join(f'<rosparam command="load" file="{file}"/>' for file in files)
+    (change,), _ = review_changes("", f'<node pkg="move" type="move" name="move">{loads}</node>')
+    assert f"parameters [{', '.join(files)}]" in change
+
+
 def test_all_remappings_of_an_added_node_are_shown(review_changes):
     topics = [f"camera/stream_{number}/image_raw" for number in range(20)]
     node = "".join(f'<remap from="{topic}" to="front/{topic}"/>' for topic in topics)

@@ -12,12 +12,16 @@ FILES = {
     "arm_msgs/package.xml": PACKAGE_XML.replace("arm_description", "arm_msgs"),
     "arm_msgs/msg/State.msg": "int32 LIMIT = 5\nint32 speed\n",
     "arm_msgs/srv/Home.srv": "int32 count\n---\nbool done\n",
+    "arm_msgs/msg/Reading.msg": "std_msgs/Header header\nstd_msgs/Header[] others\ngeometry_msgs/Pose pose\n",
     "arm_msgs/action/Move.action": "float64 goal_x\n---\nbool done\n---\nfloat64 rest\n",
     "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
 }
-HEAD = (
-    "from arm_msgs.action import Move\nfrom arm_msgs.msg import State\nfrom arm_msgs.srv import Home, HomeRequest\n\n\n"
-)
+HEAD = """from arm_msgs.action import Move
+from arm_msgs.msg import Reading, State
+from arm_msgs.srv import Home, HomeRequest
+
+
+"""
 
 
 @pytest.mark.parametrize(
@@ -28,6 +32,15 @@ HEAD = (
         ("goal = Move.Goal()\n    goal.goal_y = 1.0", ["uses 'goal goal_y', which 'arm_msgs/Move' does not have"]),
         ("request = HomeRequest()\n    request.done = 1", ["uses 'request done', which 'arm_msgs/Home' does not have"]),
         ("request = Home.Request()\n    request.count = 1", []),
+        (
+            "item = Reading()\n    item.header.timestamp = 1\n    item.pose.position.x = 1.0",
+            ["uses 'timestamp', which 'std_msgs/Header' does not have"],
+        ),
+        (
+            "item = Reading()\n    item.header.stamp = 1\n    item.others.append(1)\n    item.pose.position.x = 1.0",
+            [],
+        ),
+        ("import rospy\n    item = Reading()\n    item.header.seq = 1", []),
         ("state = State()\n    state.speed = state.LIMIT\n    print(state.get_fields_and_field_types(), state._x)", []),
         ("state = State()\n    if hasattr(state, 'force'):\n        state.force = 1", []),
         ("state = State()\n    state = drive()\n    state.force = 1", []),  # another object

@@ -505,6 +505,7 @@ MODEL = f"""<sdf version="1.7"><model name="cube"><link name="body">
   <visual name="a">{BOX}</visual><collision name="b">{BOX}</collision><collision name="c">{BOX}</collision>
 </link></model></sdf>
 """
+NO_SECTION = "without ros__parameters, so that nodes cannot load the file"
 
 
 @pytest.mark.parametrize(
@@ -520,6 +521,8 @@ MODEL = f"""<sdf version="1.7"><model name="cube"><link name="body">
          "model added: links body, visual box size 1 1 1, collision box size 1 1 1 (2 times), mass 3 kg"),
         ("config/nav.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1, alpha2: 0.2}\n",
          "parameter file added: parameters of amcl (alpha1 0.1, alpha2 0.2)"),
+        ("config/mixed.yaml", "amcl:\n  ros__parameters: {alpha1: 0.1}\ngrip:\n  type: Grip\n",
+         f"parameter file added: parameters of amcl (alpha1 0.1); {NO_SECTION}: grip (type Grip)"),
         ("config/settings.yaml", "speed: 1\nnames: [a, b]\n", "parameter file added: speed 1, names [a, b]"),
         ("config/log.yaml", "driver.log:\n  a: 1\n", "parameter file added: driver.log (a 1)"),
         ("test/config_launch.yaml", "driver.launch: {a: 1}\n", "parameter file added: driver.launch (a 1)"),

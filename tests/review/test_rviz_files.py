@@ -71,6 +71,9 @@ TOOL = "    - Class: rviz_default_plugins/MoveCamera\n"
          ["panels added: 'arm/Panel'"]),
         ("    - Class: rviz_common/Group", "    - Class: arm/Grid\n      Name: Grid\n    - Class: rviz_common/Group",
          ["display 'Grid' of class 'arm/Grid' added"]),
+        ("    - Class: rviz_common/Group",
+         "    - Class: arm/Image\n      Name: Eye\n      Image Topic: /eye\n    - Class: rviz_common/Group",
+         ["display 'Eye' of class 'arm/Image' added: topic /eye"]),
     ],
 )  # fmt: skip
 def test_changes_of_rviz_configurations_are_reported(repository, compare, old, new, expected):

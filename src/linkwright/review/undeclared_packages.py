@@ -49,8 +49,11 @@ _PYTHON_PROJECTS = {
         *("flask", "mediapipe", "nmea", "networkx", "open3d", "openai", "osqp", "paho", "pandas", "pygame"),
         *("pymodbus", "pynput", "pyrealsense2", "requests", "scipy", "serial", "shapely", "smbus", "spidev"),
         *("tensorflow", "torch", "transforms3d", "ultralytics", "utm", "websocket", "websockets", "zmq"),
+        *("casadi", "depthai", "dronekit", "evdev", "fastapi", "filterpy", "gpiozero", "gymnasium"),
+        *("multipledispatch", "numba", "onnxruntime", "paramiko", "pigpio", "plotly"),
+        *("pybullet", "pymavlink", "pynmea2", "pyproj", "pytesseract", "qpsolvers", "seaborn", "tqdm", "trimesh"),
     )
-} | {"RPi": "rpi", "skimage": "scikit", "sklearn": "scikit", "smbus2": "smbus", "usb": "usb"}
+} | {"RPi": "rpi", "skimage": "scikit", "sklearn": "scikit", "smbus2": "smbus", "usb": "usb", "busio": "adafruit"}
 """Modules that no base package of ROS brings, each with a word in the names of the packages that have it."""
 _ROS_MODULES = frozenset(
     {

@@ -26,7 +26,8 @@ _IGNORED_PROPERTIES = frozenset(
 )
 """The properties of displays that are compared separately, or that RViz fills from received data."""
 _COMPUTED_PROPERTIES = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
-_TOPIC = "Topic"
+_TOPICS = ("Topic", "Image Topic", "Marker Topic")
+"""The properties with the topic of a display: the last two in files of ROS 1."""
 _MAX_PROPERTIES = 4
 """The maximum number of properties of a display in a line."""
 
@@ -52,7 +53,7 @@ class _Item:
     @property
     def topic(self) -> str:
         """The topic; empty if there is none."""
-        return self.properties.get(_TOPIC, "")
+        return next((self.properties[name] for name in _TOPICS if name in self.properties), "")
 
 
 @dataclass(frozen=True)
@@ -202,7 +203,7 @@ def _compare_display(old: _Item, new: _Item) -> Iterator[Phrase]:
     changes = [
         _format_change(name, old.properties[name], new.properties[name])
         for name in dict.fromkeys([*new.properties, *old.properties])
-        if name != _TOPIC and name in old.properties and name in new.properties
+        if name not in _TOPICS and name in old.properties and name in new.properties
         if not _are_equal(old.properties[name], new.properties[name])
     ]
     if changes:

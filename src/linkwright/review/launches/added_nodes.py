@@ -23,6 +23,8 @@ from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _PROGRAM = re.compile(r"(?P<package>[a-z][a-z0-9_]*)/\S+")
+_RUN_COMMAND = re.compile(r"\[?(?:ros2,? run|rosrun),? (?P<package>[a-z][a-z0-9_]*),? .+")
+"""The command of a process, as a text or a list of words, that starts a program of a package."""
 _INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/.+")
 
 
@@ -164,6 +166,6 @@ def _is_remapped_by_nodes(name: str, outline: LaunchOutline) -> bool:
 
 def _find_package(entry: Entry, outline: LaunchOutline) -> str | None:
     """Return the package of a program or of an included file; None for other actions."""
-    pattern = {"node": _PROGRAM, "include": _INCLUDED_FILE}.get(entry.kind)
+    pattern = {"node": _PROGRAM, "process": _RUN_COMMAND, "include": _INCLUDED_FILE}.get(entry.kind)
     match = None if pattern is None else pattern.fullmatch(outline.resolve(entry.name))
     return None if match is None else match["package"]

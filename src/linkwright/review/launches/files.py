@@ -85,6 +85,8 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.texts.excerpts import differing_excerpts, shorten_middle
 
 _MAX_STATEMENT_CHARACTERS = 120
+_SETTING_STATEMENT = re.compile(r"\w+\[.+?\] = |\w+\.(?:append|extend|update|insert|setdefault|pop|remove)\(")
+"""The start of a statement that changes an item of a dictionary or list."""
 """The maximum number of characters of a statement that are shown."""
 _MAX_CONDITION_CHARACTERS = 240
 _MAX_SHOWN_STATEMENTS = 3
@@ -520,8 +522,9 @@ def _find_functions(file: Path, parts: Sequence[CodePart]) -> Iterator[str]:
 def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart], functions: Sequence[str]) -> Phrase:
     """Return the sentence about changed statements, which names their functions and quotes the first statement."""
     parts = added or removed
-    code = shorten_middle(parts[0].source, _MAX_STATEMENT_CHARACTERS)
+    code: str | Phrase = shorten_middle(parts[0].source, _MAX_STATEMENT_CHARACTERS)
     if removed and added:
+        code = _list_setting_statements(removed, added) or code
         if functions:
             names = joined_first([f"'{name}()'" for name in functions], MAX_NAMES)
             return phrase("other code changed in {names}, such as {code}", names=names, code=code)
@@ -533,6 +536,23 @@ def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart], 
     if not more:
         return text
     return counted("{change} and {count} more statement", "{change} and {count} more statements", more, change=text)
+
+
+def _list_setting_statements(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase | None:
+    """Return the statements that change an item of a dictionary or list, each with its condition.
+
+    Such statements set parameters and remappings of nodes. The result is None if there are none.
+    """
+    texts = [phrase("`{code}` added", code=code) for code in _select_setting_statements(added)]
+    texts += [phrase("`{code}` removed", code=code) for code in _select_setting_statements(removed)]
+    return joined_first(texts, MAX_NAMES) if texts else None
+
+
+def _select_setting_statements(parts: Sequence[CodePart]) -> Iterator[str]:
+    for part in parts:
+        if _SETTING_STATEMENT.match(part.source):
+            condition = f"{shorten_middle(part.condition, _MAX_STATEMENT_CHARACTERS)}: " if part.condition else ""
+            yield condition + shorten_middle(part.source, _MAX_STATEMENT_CHARACTERS)
 
 
 def _differ_in_names(removed: Sequence[CodePart], added: Sequence[CodePart]) -> bool:

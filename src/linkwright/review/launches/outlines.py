@@ -178,6 +178,7 @@ class CodePart:
         failing_tests: the tests of the ``if`` statements around a statement that ends the launch with an error, the
             outermost first; empty for other statements.
         scopes: the qualified names of the functions and classes around the statement, the outermost first.
+        condition: the test of the innermost ``if`` around the statement; empty if there is none.
     """
 
     text: str
@@ -185,6 +186,7 @@ class CodePart:
     span: Span
     failing_tests: tuple[FailingTest, ...] = ()
     scopes: tuple[str, ...] = ()
+    condition: str = ""
 
 
 @dataclass(frozen=True)

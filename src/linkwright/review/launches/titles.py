@@ -38,6 +38,10 @@ _SETTING_ORDER = (*_WHOLE_SETTINGS, ENVIRONMENT, "parameter")
 _VALUE_SETTINGS = ("to", "value", "appended value", "text")
 """The settings that are the only value of an action."""
 _MAX_SETTING_CHARACTERS = 160
+_PARAMETER_FILES = "parameters"
+"""The setting with the parameter files of a node."""
+_MAX_FILES_CHARACTERS = 480
+"""The maximum length of a list of parameter files: each file counts."""
 _MAX_NAME_CHARACTERS = 160
 _MAX_COMMAND_WORDS = 4
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
@@ -242,4 +246,5 @@ def _format_setting(name: str, value: str) -> str:
     if name == CONDITION:
         return shorten_middle(value, _MAX_SETTING_CHARACTERS)
     separator = " -> " if name.startswith(REMAPPING) else " "
-    return shorten_middle(f"{name}{separator}{value or EMPTY}", _MAX_SETTING_CHARACTERS)
+    limit = _MAX_FILES_CHARACTERS if name == _PARAMETER_FILES else _MAX_SETTING_CHARACTERS
+    return shorten_middle(f"{name}{separator}{value or EMPTY}", limit)

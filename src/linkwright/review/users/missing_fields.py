@@ -11,8 +11,9 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import LinkwrightError, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.messages import catalog
-from linkwright.messages.definitions.interfaces import list_structures
+from linkwright.messages.definitions.interfaces import Container, Structure, list_structures
 from linkwright.messages.definitions.library import TrustedMessages, parse_source
+from linkwright.review.caching import cached_in_review
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
@@ -81,8 +82,8 @@ def _find_uses(text: str, interfaces: Sequence[_Interface]) -> dict[tuple[str, s
     Known interfaces of ROS 2 are left out in sources of ROS 1.
     """
     named = [item for item in interfaces if item.package in text and item.name in text]
-    named = [item for item in named if item.package not in _COMMON_PACKAGES or not _ROS1.search(text)]
     uses = sorted((use for item in named for use in find_python_uses(text, item)), key=lambda use: use.line)
+    uses = [use for use in uses if use.interface.package not in _COMMON_PACKAGES or not _ROS1.search(text)]
     return {use.key: use for use in sorted({use.key: use for use in reversed(uses)}.values(), key=lambda use: use.line)}
 
 
@@ -104,7 +105,8 @@ def _read_interfaces(version: Version, files: Sequence[ChangedFile]) -> list[_In
             continue
         names = {part: list_names(structure) for part, structure in structures.items()}
         kind = PurePosixPath(path).suffix.removeprefix(".")
-        found.setdefault((package, name), []).append(_Interface(package, kind, name, names))
+        types = {part: _read_field_types(structure) for part, structure in structures.items()}
+        found.setdefault((package, name), []).append(_Interface(package, kind, name, names, field_types=types))
     own = [items[0] for items in found.values() if len(items) == 1]
     packages = {package for package, _ in found}
     return [*own, *_read_common_interfaces([package for package in _COMMON_PACKAGES if package not in packages], texts)]
@@ -118,6 +120,7 @@ def _read_common_interfaces(packages: Sequence[str], texts: Sequence[str]) -> It
     for package in packages:
         users = [text for text in texts if package in text]
         names: dict[tuple[str, str], dict[str, frozenset[str]]] = {}
+        types: dict[tuple[str, str], dict[str, dict[str, LostInterface]]] = {}
         for heading, definition in catalog.read_all_texts(package) if users else ():
             kind, _, name = heading.partition("/")
             if kind not in _PARTS or not any(name in text for text in users):
@@ -127,8 +130,23 @@ def _read_common_interfaces(packages: Sequence[str], texts: Sequence[str]) -> It
             parts = names.setdefault((kind, name), {})
             for part, structure in zip(_PARTS[kind], structures, strict=True):
                 parts[part] = parts.get(part, frozenset()) | list_names(structure)
+                types.setdefault((kind, name), {})[part] = _read_field_types(structure)
         for (kind, name), parts in names.items():
-            yield _Interface(package, kind, name, parts)
+            yield _Interface(package, kind, name, parts, field_types=types[kind, name])
+
+
+def _read_field_types(structure: Structure) -> dict[str, LostInterface]:
+    """Return the types of the fields that are messages of known packages, such as a header."""
+    single = [field for field in structure.fields if field.type.container is Container.ONE]
+    types = {field.name: field.type.base.split("/") for field in single}
+    known = {name: parts for name, parts in types.items() if parts[0] in _COMMON_PACKAGES}
+    return {name: message for name, parts in known.items() if (message := _read_message(parts[0], parts[-1]))}
+
+
+@cached_in_review(maxsize=128)
+def _read_message(package: str, name: str) -> _Interface | None:
+    """Return a message of a known package."""
+    return next((item for item in _read_common_interfaces([package], [f"{package} {name}"]) if item.name == name), None)
 
 
 def _make_change(path: str, use: InterfaceUse) -> Change:

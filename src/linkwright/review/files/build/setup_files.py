@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import SourceText, foreign, phrase
+from linkwright.diagnostics import SourceText, foreign
 from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.packages.readers.setup_py import SetupFile, read_setup
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.build.comparison import compare_build_files
 from linkwright.review.files.build.facts import BuildFacts, Fact, FactKind
+from linkwright.review.files.build.installed_modules import FIND_PACKAGES, compare_modules, finds_packages
 from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"
-_FIND_PACKAGES = "find_packages"
 _CATKIN_SETUP = "generate_distutils_setup"
 _COMPARED_ARGUMENTS = frozenset({"entry_points", "data_files", "packages"})
 _SHOWN_ARGUMENTS = frozenset({"name", "version", "description", "python_requires", "license"})
@@ -27,23 +27,7 @@ _SHOWN_ARGUMENTS = frozenset({"name", "version", "description", "python_requires
 def compare_setup_files(pair: FilePair) -> None:
     """Compare two versions of a ``setup.py`` without running it."""
     compare_build_files(pair, read_setup_facts)
-    _compare_modules(pair)
-
-
-def _compare_modules(pair: FilePair) -> None:
-    """Report the executables whose module was removed."""
-    setup = read_setup(SourceText(str(pair.new_file), pair.new_file.read_text(encoding="utf-8", errors="replace")))
-    for program in setup.entry_points:
-        path = program.module.replace(".", "/")
-        files = [f"{path}.py", f"{path}/__init__.py"]
-        had_module, has_module = (
-            any((file.parent / name).is_file() for name in files) for file in (pair.old_file, pair.new_file)
-        )
-        if had_module and not has_module:
-            text = phrase(
-                "executable '{name}': its module '{module}' was removed", name=program.executable, module=program.module
-            )
-            pair.add(text, pair.location(program.span), phrase("the executable no longer starts"))
+    compare_modules(pair)
 
 
 def read_setup_facts(version: Version, path: str) -> BuildFacts:
@@ -75,7 +59,7 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
 
 def _find_other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
     """Yield the Python packages that ``find_packages`` finds, or that catkin installs."""
-    for call in python.calls(_FIND_PACKAGES):
+    for call in python.calls(FIND_PACKAGES):
         excluded = [python.text(item) for item in getattr(argument_of(call, "exclude"), "elts", ())]
         for name in _find_packages_below(folder, ""):
             if not any(fnmatchcase(name, pattern) for pattern in excluded if pattern is not None):
@@ -110,25 +94,13 @@ def _find_packages_below(folder: Path, prefix: str) -> Iterator[str]:
             yield from _find_packages_below(file.parent, f"{name}.")
 
 
-def _finds_packages(python: PythonFile, node: ast.expr) -> bool:
-    """Return whether an expression is a call of ``find_packages`` for the folder of the file."""
-    call = python.resolved(node)
-    if not isinstance(call, ast.Call) or called_name(call).rpartition(".")[2] != _FIND_PACKAGES or call.args:
-        return False
-    excluded = argument_of(call, "exclude")
-    is_literal = excluded is None or (
-        isinstance(excluded, (ast.List, ast.Tuple)) and None not in map(python.text, excluded.elts)
-    )
-    return is_literal and all(keyword.arg == "exclude" for keyword in call.keywords)
-
-
 def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
     call = next(python.calls("setup"), None)
     if call is None:
         return
     facts.facts += _read_entry_points(python, argument_of(call, "entry_points"))
     for keyword in call.keywords:
-        is_known = keyword.arg != "packages" or setup.packages is not None or _finds_packages(python, keyword.value)
+        is_known = keyword.arg != "packages" or setup.packages is not None or finds_packages(python, keyword.value)
         if keyword.arg in _COMPARED_ARGUMENTS and is_known:
             continue
         text = python.text(keyword.value)

@@ -145,10 +145,20 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
         node = find_node_name(name)
         if node is not None:
             nodes.setdefault(node, {})[name] = value
-    if nodes:
-        return phrase("parameters of {names}", names=_format_values(nodes))
     names = [str(key.value) for key, _ in list_merged_items(root)]
     keys = {key: {name: value for name, value in values.items() if _is_below(name, key)} for key in names}
+    if nodes:
+        text = phrase("parameters of {names}", names=_format_values(nodes))
+        others = {key: found for key, found in keys.items() if found and not any(map(find_node_name, found))}
+        return (
+            text
+            if not others
+            else phrase(
+                "{contents}; without ros__parameters, so that nodes cannot load the file: {names}",
+                contents=text,
+                names=_format_values(others),
+            )
+        )
     return _format_values(keys) if keys else None
 
 

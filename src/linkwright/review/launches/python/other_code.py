@@ -56,7 +56,7 @@ def read_other_code(
     """
     normalizer = _CodeNormalizer(python, covered, branches, texts)
     tests = find_failing_tests(python)
-    scopes = _find_scopes(python.tree)
+    scopes, conditions = _find_scopes(python.tree), _find_conditions(python.tree)
     parts = (
         CodePart(
             normalizer.format_statement(node),
@@ -64,6 +64,7 @@ def read_other_code(
             python.span(node),
             tests.get(id(node), ()),
             scopes[id(node)],
+            conditions.get(id(node), ""),
         )
         for node in sorted(_find_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
@@ -93,6 +94,17 @@ def _find_scopes(tree: ast.AST) -> dict[int, tuple[str, ...]]:
             scopes[id(node)] = around
         pending += [(child, around) for child in ast.iter_child_nodes(node)]
     return scopes
+
+
+def _find_conditions(tree: ast.AST) -> dict[int, str]:
+    """Return the test of the innermost ``if`` around a statement, by the identity of the statement."""
+    conditions: dict[int, str] = {}
+    for node in ast.walk(tree):  # outer statements come first
+        if isinstance(node, ast.If):
+            test = _unparse(node.test)
+            conditions |= {id(inner): f"if {test}" for part in node.body for inner in ast.walk(part)}
+            conditions |= {id(inner): f"if not ({test})" for part in node.orelse for inner in ast.walk(part)}
+    return conditions
 
 
 def _unparse(node: ast.AST) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 WHOLE = "whole"
 """The part of a service or action that has the other parts."""
@@ -22,6 +22,7 @@ class LostInterface:
         names: the lost fields and constants by the part, such as ``request``, with a space; empty for a message.
         constants: the names of all constants of the old version.
         is_removed: whether the whole interface was removed or renamed.
+        field_types: by the part, the fields that are messages, with what their types lack.
     """
 
     package: str
@@ -30,6 +31,7 @@ class LostInterface:
     names: Mapping[str, frozenset[str]]
     constants: frozenset[str] = frozenset()
     is_removed: bool = False
+    field_types: Mapping[str, Mapping[str, LostInterface]] = field(default_factory=dict, compare=False)
 
     @property
     def type_name(self) -> str:

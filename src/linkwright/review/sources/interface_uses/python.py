@@ -145,16 +145,32 @@ class _UseFinder:
 
     def _find_accesses(self, scope: ast.AST, variable: str, part: str) -> Iterator[InterfaceUse]:
         names = self._interface.lost_from(part)
+        fields = self._interface.field_types.get(part, {})
         for node in self._nodes.of_scope(scope):
-            is_access = isinstance(node, ast.Attribute) and node.attr in names
-            if isinstance(node, ast.Attribute) and is_access and ast.unparse(node.value) == variable:
+            if not isinstance(node, ast.Attribute):
+                continue
+            owner = node.value
+            inner = fields.get(owner.attr) if isinstance(owner, ast.Attribute) else None
+            if node.attr in names and ast.unparse(node.value) == variable:
                 yield from self._report(node, f"{part}{node.attr}")
+            elif (
+                inner is not None
+                and node.attr in inner.lost_from("")
+                and ast.unparse(owner) == f"{variable}.{owner.attr}"
+            ):
+                yield from self._report(node, node.attr, interface=inner)
 
-    def _report(self, node: ast.stmt | ast.expr, name: str, alias: ast.alias | None = None) -> Iterator[InterfaceUse]:
+    def _report(
+        self,
+        node: ast.stmt | ast.expr,
+        name: str,
+        alias: ast.alias | None = None,
+        interface: LostInterface | None = None,
+    ) -> Iterator[InterfaceUse]:
         place = alias or node
         field = name.rpartition(" ")[2]
         is_guarded = id(node) in self._nodes.guarded
         if not self._interface.is_removed:
             is_guarded = field in self._nodes.tested or id(node) in self._nodes.handled
         if not is_guarded:
-            yield InterfaceUse(self._interface, name, place.lineno, place.col_offset + 1)
+            yield InterfaceUse(interface or self._interface, name, place.lineno, place.col_offset + 1)
