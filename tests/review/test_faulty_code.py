@@ -52,6 +52,7 @@ def test_code_that_no_compiler_accepts_is_breaking(repository, compare, code, ex
         "#if 0\nvoid stop(Pump& p) { p. }\n#endif\n",
         "// p. }\n",
         "#define MEMBER(a) a.\n",
+        "PUMP_OPERATOR(==)\nPUMP_OPERATORS(Pump, <<)\n",
     ],
 )
 def test_complete_code_is_not_told(repository, compare, code):

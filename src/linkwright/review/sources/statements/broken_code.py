@@ -14,6 +14,8 @@ _CONFLICT = re.compile(r"^<<<<<<< .*\n(?:(?!<<<<<<< ).*\n)*?=======\r?\n(?:.*\n)
 _UNFINISHED = frozenset({".", "->", "=", "||", "<<", "==", "!=", "<=", ">=", "+=", "-=", "*=", "/="})
 """Operators that need something behind them."""
 _ENDS = frozenset({";", "}", ")"})
+_BEFORE = frozenset({"operator", "(", ","})
+"""Tokens before an operator that needs nothing behind it: its function, or the arguments of a macro."""
 _MAX_CHARACTERS = 60
 
 
@@ -29,7 +31,7 @@ def find_broken_code(text: str) -> tuple[Phrase, int] | None:
     tokens = tokenize_cpp(code)
     for index in range(1, len(tokens) - 1):
         token, following = tokens[index], tokens[index + 1]
-        is_unfinished = _is_operator(token) and token.text in _UNFINISHED and tokens[index - 1].text != "operator"
+        is_unfinished = _is_operator(token) and token.text in _UNFINISHED and tokens[index - 1].text not in _BEFORE
         if is_unfinished and _is_operator(following) and following.text in _ENDS:
             return phrase("`{code}` breaks off", code=_format_statement(tokens[: index + 1])), token.start
     return None
