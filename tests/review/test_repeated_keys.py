@@ -8,7 +8,7 @@ from tests.repositories import PACKAGE_XML
 from tests.review.conftest import subject
 
 PATH = "p/config/lamp.yaml"
-LINE = "key 'lamp.bulb' is repeated in its mapping; only the last value counts"
+LINE = "key 'lamp.bulb' is repeated in its mapping"
 
 
 @pytest.mark.parametrize(
@@ -24,3 +24,11 @@ def test_a_key_that_only_the_new_version_repeats_is_told(repository, compare, ol
     repository.write({PATH: new})
     lines = subject(compare(repository), PATH).changes
     assert [change.location.line for change in lines if str(change.sentence) == LINE] == ([3] if is_told else [])
+
+
+def test_a_repeated_key_whose_list_item_moves_is_not_new(repository, compare):
+    repository.commit({"p/package.xml": PACKAGE_XML, PATH: "lamps:\n- bulb: 1\n  bulb: 2\n"})
+    repository.write({PATH: "lamps:\n- color: 1\n- bulb: 1\n  bulb: 2\n"})
+    lines = subject(compare(repository), PATH).changes
+    assert lines
+    assert not [change for change in lines if "is repeated in its mapping" in str(change.sentence)]

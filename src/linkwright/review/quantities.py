@@ -25,7 +25,7 @@ def compare_size(old: object, new: object) -> Iterator[Figure]:
 def compare_quantity(name: Phrase, unit: str, old: object, new: object, *, separator: str = " ") -> Iterator[Figure]:
     """Yield a quantity if it differs by more than the tolerance.
 
-    Quantities without a unit are counts. The separator stands between the numbers of a quantity.
+    Quantities without a unit are counts. The separator is placed between the numbers of a quantity.
     """
     if old is None or new is None:
         return

@@ -10,7 +10,7 @@ from linkwright.files.scratch_folders import is_scratch_folder
 def list_enclosing_folders(folder: Path, maximum: int) -> list[Path]:
     """Return a folder and those around it, the nearest one first, up to the root of the repository.
 
-    The root contains ``.git``, or is in the temporary folder of an exported version. What is outside differs between
+    The root contains ``.git``, or is in the temporary folder of an exported version. Files outside of it differ between
     the computers and between the versions of a review.
 
     Args:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 
@@ -22,12 +23,17 @@ def report_repeated_keys(pair: FilePair, old: yaml.Node | None, new: yaml.Node |
         old: the root node of the old version.
         new: the root node of the new version.
     """
-    known = {path for path, _ in _list_repeated(old, "", set())}
+    known = {_drop_numbers(path) for path, _ in _list_repeated(old, "", set())}
     for path, key in _list_repeated(new, "", set()):
-        if path not in known:
+        if _drop_numbers(path) not in known:
             mark = key.start_mark
-            text = phrase("key '{name}' is repeated in its mapping; only the last value counts", name=path)
+            text = phrase("key '{name}' is repeated in its mapping", name=path)
             pair.changes.append(Change(text, location=Location(pair.new_path, mark.line + 1, mark.column + 1)))
+
+
+def _drop_numbers(path: str) -> str:
+    """Return the path of a key without the numbers of list items, which change if an item is added before them."""
+    return re.sub(r"\[\d+\]", "[]", path)
 
 
 def _list_repeated(node: yaml.Node | None, path: str, seen: set[int]) -> Iterator[tuple[str, yaml.Node]]:

@@ -149,16 +149,12 @@ class _UseFinder:
         for node in self._nodes.of_scope(scope):
             if not isinstance(node, ast.Attribute):
                 continue
-            owner = node.value
-            inner = fields.get(owner.attr) if isinstance(owner, ast.Attribute) else None
             if node.attr in names and ast.unparse(node.value) == variable:
                 yield from self._report(node, f"{part}{node.attr}")
-            elif (
-                inner is not None
-                and node.attr in inner.lost_from("")
-                and ast.unparse(owner) == f"{variable}.{owner.attr}"
-            ):
-                yield from self._report(node, node.attr, interface=inner)
+            elif isinstance(node.value, ast.Attribute) and ast.unparse(node.value.value) == variable:
+                inner = fields.get(node.value.attr)
+                if inner is not None and node.attr in inner.lost_from(""):
+                    yield from self._report(node, node.attr, interface=inner)
 
     def _report(
         self,
