@@ -85,9 +85,9 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.texts.excerpts import differing_excerpts, shorten_middle
 
 _MAX_STATEMENT_CHARACTERS = 120
+"""The maximum number of characters of a statement that are shown."""
 _SETTING_STATEMENT = re.compile(r"\w+\[.+?\] = |\w+\.(?:append|extend|update|insert|setdefault|pop|remove)\(")
 """The start of a statement that changes an item of a dictionary or list."""
-"""The maximum number of characters of a statement that are shown."""
 _MAX_CONDITION_CHARACTERS = 240
 _MAX_SHOWN_STATEMENTS = 3
 """The maximum number of changed statements that are shown separately."""
