@@ -31,7 +31,7 @@ def generate_launch_description():
 """
 PATH = "lamp/launch/lamp.launch.py"
 TOPIC, BAG, VIEW = (f"{line}\n" for line in FILE.splitlines() if "DeclareLaunchArgument(" in line)
-LEFT = "argument '{}' is no longer declared; the file still uses it"
+LEFT = "argument '{}' is no longer declared, but the file still uses it"
 
 
 @pytest.mark.parametrize(

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span, phrase
+from linkwright.diagnostics import Phrase, SourceText, Span, phrase
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
-from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.included import MAX_INCLUDE_DEPTH, IncludedActions
 from linkwright.review.launches.outlines import CONDITION, FAILURES, Entry, LaunchOutline
 from linkwright.review.launches.programs.missing import find_missing_file, lacks_executable, lacks_program
-from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.versions import Version
@@ -97,20 +97,13 @@ def _find_failing_action(version: Version, path: str, outline: LaunchOutline, de
             return LaunchFailure(phrase("an action has wrong arguments"), entry.span)
         included = actions.find_included_file(entry, actions.file) if depth < MAX_INCLUDE_DEPTH else None
         included_path = None if included is None else version.relative(included)
-        included_outline = None if included_path is None else _try_read_outline(version, included_path)
+        included_outline = None if included_path is None else try_read_outline(version, included_path)
         if included_path is not None and included_outline is not None:
             failure = find_failure(version, included_path, included_outline, depth + 1)
             if failure is not None:
                 reason = phrase("{reason} (in {file})", reason=failure.reason, file=included_path)
                 return LaunchFailure(reason, entry.span)
     return None
-
-
-def _try_read_outline(version: Version, path: str) -> LaunchOutline | None:
-    try:
-        return read_outline(version.file(path), version.root)
-    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
-        return None
 
 
 def _find_undefined_name(file: Path) -> LaunchFailure | None:

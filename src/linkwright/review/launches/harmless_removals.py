@@ -52,7 +52,7 @@ def explain_harmless_removal(
         is_other = default is not None and default != entry.settings.get("default")
         return phrase("{change} with the default '{value}'", change=text, value=default) if is_other else text
     if _is_still_read(pair, entry, new):
-        return phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
+        return phrase("argument '{name}' is no longer declared, but the file still uses it", name=entry.name)
     starting_node = find_starting_node(entry, added, pair.versions.new.root)
     if starting_node is not None:
         new_title = format_title(starting_node)

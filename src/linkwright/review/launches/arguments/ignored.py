@@ -10,8 +10,9 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Location
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.argument_uses import is_used, read_code, uses_computed_arguments
-from linkwright.review.launches.arguments.passed import find_passed, names_outside_of_keys, try_read
+from linkwright.review.launches.arguments.passed import find_passed, names_outside_of_keys
 from linkwright.review.launches.outlines import PASSES_ALL_ARGUMENTS, Entry, LaunchOutline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
 
@@ -54,7 +55,7 @@ def _find_ignored(version: Version, path: str) -> Iterator[tuple[tuple[str, str]
     """
     code = read_code(version.file(path))
     includes = list(find_passed(version, path))
-    outline = try_read(version, path)
+    outline = try_read_outline(version, path)
     count = sum(entry.kind == "include" for entry in outline.entries) if outline is not None else 0
     if outline is None or outline.is_ros1 or PASSES_ALL_ARGUMENTS in code:
         return
@@ -74,7 +75,7 @@ def _uses(path: str, code: str, outline: LaunchOutline, name: str) -> bool:
 
 def _ignores(version: Version, path: str, name: str) -> bool:
     """Return whether a launch file, which includes nothing, certainly does not use an argument."""
-    outline = try_read(version, path)
+    outline = try_read_outline(version, path)
     if outline is None or outline.is_ros1 or outline.has_unknown_actions:
         return False
     if any(entry.kind in ("include", "action") for entry in outline.entries):

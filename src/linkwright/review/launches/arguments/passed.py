@@ -7,10 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, joined, phrase, quoted_names
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
-from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.argument_uses import read_code
 from linkwright.review.launches.arguments.chosen_files import find_chosen_files
@@ -21,10 +20,9 @@ from linkwright.review.launches.outlines import (
     NAMESPACE_OF_INCLUDED,
     PASSES_ALL_ARGUMENTS,
     Entry,
-    LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.programs.sources import try_read_outline
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 
@@ -50,7 +48,7 @@ def find_passed_arguments(versions: Versions, changed_files: Sequence[ChangedFil
 
 def _find_lost_arguments(versions: Versions, old_path: str, new_path: str) -> dict[str, Phrase]:
     """Return the arguments that only the old version of a launch file declares, with the effect on callers."""
-    old, new = try_read(versions.old, old_path), try_read(versions.new, new_path)
+    old, new = try_read_outline(versions.old, old_path), try_read_outline(versions.new, new_path)
     if old is None or new is None or old.is_ros1 != new.is_ros1:
         return {}
     remaining = {entry.name for entry in new.entries if entry.has_value}
@@ -90,7 +88,7 @@ def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFi
         known = set(_find_refused(versions.old, file.old_path))
         for (included_path, name), entry in _find_refused(versions.new, file.new_path).items():
             old_included_path = old_paths.get(included_path, included_path)
-            old = try_read(versions.old, old_included_path)
+            old = try_read_outline(versions.old, old_included_path)
             was_declared = old is not None and any(other.has_value and other.name == name for other in old.entries)
             if (old_included_path, name) in known or was_declared:
                 continue
@@ -130,14 +128,14 @@ def _check_chosen_files(versions: Versions, old_path: str, new_path: str) -> Ite
 
 def _find_chosen_refusals(version: Version, path: str) -> list[tuple[Entry, dict[str, tuple[str, set[str]]]]]:
     """Return the includes of ROS 1 with the files that one argument can choose, and the arguments that each refuses."""
-    outline = try_read(version, path)
+    outline = try_read_outline(version, path)
     found = []
     for entry in [] if outline is None or not outline.is_ros1 else outline.entries:
         chosen = find_chosen_files(version, entry.name) if entry.kind == "include" else {}
         passed = _list_passed(entry)
         files: dict[str, tuple[str, set[str]]] = {}
         for word, file in chosen.items():
-            included = try_read(version, file)
+            included = try_read_outline(version, file)
             if included is not None:
                 files[word] = file, passed - {other.name for other in included.entries if other.has_value}
         found.append((entry, files))
@@ -154,7 +152,7 @@ def _find_refused(version: Version, path: str) -> dict[tuple[str, str], Entry]:
     """Return the includes that fail in ROS 1, by the path of the included file and the argument that it refuses."""
     refused: dict[tuple[str, str], Entry] = {}
     for entry, included_path, passed in find_passed(version, path, is_ros1=True):
-        included = try_read(version, included_path)
+        included = try_read_outline(version, included_path)
         if included is not None and included.is_ros1:
             declared = {other.name for other in included.entries if other.has_value}
             refused |= {(included_path, name): entry for name in sorted(passed - declared)}
@@ -169,7 +167,7 @@ def find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Iterat
         path: the path of the file.
         is_ros1: whether to leave out files of ROS 2.
     """
-    outline = try_read(version, path)
+    outline = try_read_outline(version, path)
     if outline is None or (is_ros1 and not outline.is_ros1):
         return
     actions = IncludedActions(version, path, outline)
@@ -178,11 +176,3 @@ def find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Iterat
         included_path = None if file is None else version.relative(file)
         if included_path is not None:
             yield entry, included_path, _list_passed(entry)
-
-
-def try_read(version: Version, path: str) -> LaunchOutline | None:
-    """Return the actions of a launch file, or None if it cannot be read."""
-    try:
-        return read_outline(version.file(path), version.root)
-    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
-        return None

@@ -64,7 +64,7 @@ def read_other_code(
             python.span(node),
             tests.get(id(node), ()),
             scopes[id(node)],
-            conditions.get(id(node), ""),
+            conditions[id(node)],
         )
         for node in sorted(_find_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
@@ -99,11 +99,17 @@ def _find_scopes(tree: ast.AST) -> dict[int, tuple[str, ...]]:
 def _find_conditions(tree: ast.AST) -> dict[int, str]:
     """Return the test of the innermost ``if`` around a statement, by the identity of the statement."""
     conditions: dict[int, str] = {}
-    for node in ast.walk(tree):  # outer statements come first
+    pending: list[tuple[ast.AST, str]] = [(tree, "")]
+    while pending:
+        node, around = pending.pop()
+        if isinstance(node, ast.stmt):
+            conditions[id(node)] = around
         if isinstance(node, ast.If):
             test = _unparse(node.test)
-            conditions |= {id(inner): f"if {test}" for part in node.body for inner in ast.walk(part)}
-            conditions |= {id(inner): f"if not ({test})" for part in node.orelse for inner in ast.walk(part)}
+            pending += [(statement, f"if {test}") for statement in node.body]
+            pending += [(statement, f"if not ({test})") for statement in node.orelse]
+        else:
+            pending += [(child, around) for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
     return conditions
 
 
