@@ -27,12 +27,13 @@ def find_lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) 
     lost = {
         file.new_path: methods for file in changed_files if file.new_path and (methods := _find_lost(versions, file))
     }
-    changed = {
-        file.new_path: versions.old.text(file.old_path) if file.old_path else ""
+    new_calls = {
+        file.new_path: called
         for file in changed_files
         if file.new_path and file.new_path.endswith(CPP_SUFFIXES) and not file.is_submodule
+        if (called := _find_new_calls(versions, file.old_path, file.new_path))
     }
-    if not changed:
+    if not lost and not new_calls:
         return
     paths = versions.new.paths(CPP_SUFFIXES)
     texts = {path: versions.new.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
@@ -49,12 +50,19 @@ def find_lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) 
                 if call.header == header and (call.class_name, call.method) in methods:
                     told.add((path, call.class_name, call.method))
                     yield path, _make_change(path, header, call.class_name, call.method, call.line)
-    for path, old_text in changed.items():
-        for call in calls.find_missing(path, calls.find_called(path) - calls.list_called(blank_comments(old_text))):
+    for path in [path for path in new_calls if path in texts]:
+        for call in calls.find_missing(path, new_calls[path]):
             key = path, call.class_name, call.method
             if key not in told:
                 told.add(key)
                 yield path, _make_change(path, call.header, call.class_name, call.method, call.line)
+
+
+def _find_new_calls(versions: Versions, old_path: str | None, new_path: str) -> set[str]:
+    """Return the names of the methods that only the new version of a source calls of objects."""
+    old_text = versions.old.text(old_path) if old_path else ""
+    called, known = (ObjectCalls.list_called(blank_comments(text)) for text in (versions.new.text(new_path), old_text))
+    return called - known
 
 
 def _find_lost(versions: Versions, file: ChangedFile) -> list[tuple[str, str]]:

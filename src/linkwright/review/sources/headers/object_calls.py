@@ -65,10 +65,6 @@ class ObjectCalls:
         """Return the names of the methods that a source without comments calls of objects."""
         return {match["method"] for match in _CALL.finditer(code)}
 
-    def find_called(self, path: str) -> set[str]:
-        """Return the names of the methods that a source of the version calls of objects."""
-        return self.list_called(blank_comments(self._texts[path])) if path in self._texts else set()
-
     def find_missing(self, path: str, methods: Collection[str]) -> Iterator[MissingMethod]:
         """Yield the calls of methods, by their names, that the class of the object certainly does not have.
 

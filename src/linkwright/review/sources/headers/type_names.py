@@ -41,7 +41,7 @@ def compare_type_names(old: str, new: str) -> Iterator[TypeNameChange]:
         new: its new text.
     """
     before, after = _read_type_names(old), _read_type_names(new)
-    for name in before.keys() & after.keys():
+    for name in [name for name in before if name in after]:
         (old_types, _), (new_types, line) = before[name], after[name]
         if len(old_types) != 1 or len(new_types) != 1:
             continue
