@@ -470,17 +470,17 @@ def test_other_kinds_of_dependencies_are_one_line(repository, compare):
 def test_files_that_are_not_compared_have_their_states(package, compare):
     package.commit({"a/old.txt": "old", "a/same.txt": "same", "a/moved.txt": "a text that moves\n" * 9})
     textures = {f"a/textures/t{n}.png": "png" for n in range(5)}
-    robot = {"a/mjcf/arm.xml": "<mujoco model='arm'/>\n"}
+    robot = {"a/usd/arm.usda": "#usda 1.0\n"}
     moved = {"a/moved.txt": None, "a/new/moved.txt": "a text that moves\n" * 9}
     package.commit({"a/old.txt": None, "a/same.txt": "other", **moved, **textures, **robot})
     lines = as_text(compare(package, "HEAD~1..HEAD")).split("\n\n")[0].splitlines()
     assert lines == [
         "other changed files",
-        "  a/mjcf/arm.xml (added, robot or world of MuJoCo, not compared)",
         "  a/new/moved.txt (renamed from a/moved.txt)",
         "  a/old.txt (removed)",
         "  a/same.txt",
         "  a/textures/ (5 files, added)",
+        "  a/usd/arm.usda (added, robot or world in USD, not compared)",
     ]
 
 

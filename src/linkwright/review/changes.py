@@ -36,6 +36,7 @@ class SubjectKind(Enum):
     DESCRIPTION = "description"
     WORLD = "world"
     TEMPLATE = "template of a model or world"
+    MUJOCO = "robot or world of MuJoCo"
     PART = "part of descriptions"
     SEMANTICS = "semantic description"
     MESH = "mesh"

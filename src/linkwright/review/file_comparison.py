@@ -40,7 +40,7 @@ _INSTALLED_KINDS = frozenset(
     {
         *(SubjectKind.DESCRIPTION, SubjectKind.WORLD, SubjectKind.TEMPLATE, SubjectKind.SEMANTICS),
         *(SubjectKind.LAUNCH_FILE, SubjectKind.BEHAVIOR_TREE, SubjectKind.PARAMETERS, SubjectKind.MAP),
-        SubjectKind.RVIZ,
+        *(SubjectKind.RVIZ, SubjectKind.MUJOCO),
     }
 )
 """The kinds of files that programs and users find in the share folder of their package."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
@@ -13,6 +13,7 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.arms.semantics import compare_semantics, semantic_contents
+from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.behavior_trees import compare_behavior_trees, tree_contents
 from linkwright.review.files.build.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
 from linkwright.review.files.build.contents import build_contents
@@ -35,10 +36,11 @@ from linkwright.review.files.build.python_settings import (
     read_setup_cfg,
 )
 from linkwright.review.files.build.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
-from linkwright.review.files.gui_files import compare_gui_files, gui_contents
+from linkwright.review.files.gui_files import compare_gui_files, gui_contents, is_gui_file
 from linkwright.review.files.interfaces import compare_interfaces, interface_contents
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
+from linkwright.review.files.mujoco_files import compare_mujoco_files, is_mujoco_file, mujoco_contents
 from linkwright.review.files.parameters.comparing import parameter_contents
 from linkwright.review.files.parameters.configurations import YAML_SUFFIXES
 from linkwright.review.files.rviz_files import compare_rviz_files, rviz_contents
@@ -276,7 +278,7 @@ LAUNCH_HELPER = KindRule(
 """The rule for Python modules that make actions for launch files."""
 
 
-GUI = KindRule(
+_GUI = KindRule(
     SubjectKind.GUI,
     compare_gui_files,
     (".config",),
@@ -288,7 +290,19 @@ GUI = KindRule(
 """The rule for configurations of Gazebo's window."""
 
 
-BEHAVIOR_TREE = KindRule(
+_MUJOCO = KindRule(
+    SubjectKind.MUJOCO,
+    compare_mujoco_files,
+    (".xml",),
+    phrase("robot or world of MuJoCo added"),
+    phrase("robot or world of MuJoCo removed"),
+    phrase("launch files and programs that name the file do not find it"),
+    contents=mujoco_contents,
+)
+"""The rule for robots and worlds of MuJoCo."""
+
+
+_BEHAVIOR_TREE = KindRule(
     SubjectKind.BEHAVIOR_TREE,
     compare_behavior_trees,
     (".xml",),
@@ -299,6 +313,18 @@ BEHAVIOR_TREE = KindRule(
     shows_removed=True,
 )
 """The rule for XML files that contain behavior trees."""
+
+
+_CONTENT_RULES = ((is_tree_file, _BEHAVIOR_TREE), (is_gui_file, _GUI), (is_mujoco_file, _MUJOCO))
+
+
+def find_rule_by_contents(files: Sequence[Path]) -> KindRule | None:
+    """Return the rule for a file whose name is not that of a kind, or None if such files are not compared.
+
+    Args:
+        files: the versions of the file that exist.
+    """
+    return next((rule for matches, rule in _CONTENT_RULES if any(map(matches, files))), None)
 
 
 MAP = KindRule(

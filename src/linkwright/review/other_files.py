@@ -65,8 +65,6 @@ def _find_foreign_kind(version: Version, path: str) -> Phrase | None:
         return phrase("robot or world in USD, not compared")
     if suffix in (".wbt", ".proto") and _read_beginning(version, path).startswith(b"#VRML_SIM"):
         return phrase("robot or world of Webots, not compared")
-    if suffix == ".xml" and b"<mujoco" in _read_beginning(version, path):
-        return phrase("robot or world of MuJoCo, not compared")
     return None
 
 

@@ -30,11 +30,9 @@ from linkwright.review.changes import (
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
-from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.build.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
 from linkwright.review.files.build.dependency_lists import is_repository_list
 from linkwright.review.files.build.rosbuild_manifests import compare_rosbuild_manifests
-from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.parameters.configurations import is_configuration
@@ -47,8 +45,6 @@ from linkwright.review.findings.hidden import drop_hidden_findings
 from linkwright.review.findings.renamed import drop_renamed_findings
 from linkwright.review.findings.unfixed import drop_unfixed_findings
 from linkwright.review.kinds import (
-    BEHAVIOR_TREE,
-    GUI,
     LAUNCH_FILE,
     LAUNCH_HELPER,
     LAUNCH_TEST,
@@ -58,6 +54,7 @@ from linkwright.review.kinds import (
     SEMANTIC_XACRO,
     KindRule,
     find_rule,
+    find_rule_by_contents,
     may_help_launch_files,
 )
 from linkwright.review.launch_paths import (
@@ -404,10 +401,7 @@ class _Reviewer:
             return LAUNCH_FILE if is_launch else None
         if rule is None and any(is_launch_xml(file) for file in files):
             return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
-        if rule is None and any(is_tree_file(file) for file in files):
-            return BEHAVIOR_TREE
-        if rule is None and any(is_gui_file(file) for file in files):
-            return GUI
+        rule = rule or find_rule_by_contents(files)
         if rule is None and may_help_launch_files(path):
             if any(contains_actions(version, name) for version, name in sides if name):
                 return LAUNCH_FILE
