@@ -496,6 +496,20 @@ RVIZ = """Visualization Manager:
 """
 SRDF = '<robot name="arm"><group name="arm"/><group_state name="home" group="arm"/></robot>'
 BRIDGE = "- {ros_topic_name: /scan, gz_topic_name: /lidar, ros_type_name: a/msg/B, gz_type_name: gz.msgs.C}\n"
+PLATE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="0.1"/><up_axis>Z_UP</up_axis></asset>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="p"><float_array id="a" count="9">0 0 0 20 0 0 0 30 0</float_array>
+      <technique_common><accessor source="#a" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene>
+  </library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>"""
 CUBE = "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n"
 
 
@@ -532,6 +546,7 @@ NO_SECTION = "without ros__parameters, so that nodes cannot load the file"
         ("rviz/arm.rviz", RVIZ, "RViz configuration added: displays Grid, Laser /scan"),
         ("srdf/arm.srdf", SRDF, "semantic description added: group 'arm', group_state 'arm/home'"),
         ("meshes/cube.obj", CUBE, "mesh added: 1 triangle, 2 x 3 x 0 in the units of the file"),
+        ("meshes/plate.dae", PLATE, "mesh added: 1 triangle, 2 x 3 x 0 m"),
         ("rviz/broken.rviz", "a: [", "RViz configuration added"),
     ],
 )  # fmt: skip
@@ -539,6 +554,15 @@ def test_added_file_is_described_by_its_contents(repository, compare, name, text
     repository.commit({"p/package.xml": PACKAGE_XML.replace("arm_description", "p")})
     repository.write({f"p/{name}": text})
     assert sentences(subject(compare(repository), f"p/{name}")) == [expected]
+
+
+def test_corners_of_collada_are_in_meters(repository, compare):
+    repository.commit({"p/package.xml": PACKAGE_XML.replace("arm_description", "p"), "p/meshes/plate.dae": PLATE})
+    repository.write({"p/meshes/plate.dae": PLATE.replace('meter="0.1"', 'meter="1"')})
+    figures = subject(compare(repository), "p/meshes/plate.dae").figures
+    assert [(str(it.name), it.old, it.new, it.unit) for it in figures if str(it.name).endswith("corner")] == [
+        ("highest corner", "2 3 0", "20 30 0", "m")
+    ]
 
 
 def test_values_that_tell_most_are_shown_of_a_long_file(repository, compare):

@@ -17,6 +17,8 @@ _MAX_BYTES = 100 << 20
 """The maximum size in bytes of compared meshes. For larger meshes, only the file sizes are compared."""
 _MAX_CONTENT_BYTES = 10 << 20
 """The maximum size in bytes of added meshes whose contents are shown. A commit can add hundreds of meshes."""
+_METRIC_SUFFIXES = frozenset({".dae", ".glb", ".gltf"})
+"""The endings of formats that state their unit, so that the sizes are in meters."""
 _TOLERANCE = 1e-6
 
 
@@ -36,15 +38,14 @@ def compare_meshes(pair: FilePair) -> None:
         pair.images += render_meshes(pair)
     if old.count != new.count:
         pair.figures.append(Figure(phrase("triangles"), str(old.count), str(new.count)))
-    for name, before, after in zip(
-        (phrase("lowest corner, in the units of the file"), phrase("highest corner, in the units of the file")),
-        old.bounds,
-        new.bounds,
-        strict=True,
-    ):
+    names = phrase("lowest corner, in the units of the file"), phrase("highest corner, in the units of the file")
+    unit = ""
+    if pair.new_file.suffix.lower() in _METRIC_SUFFIXES:
+        names, unit = (phrase("lowest corner"), phrase("highest corner")), "m"
+    for name, before, after in zip(names, old.bounds, new.bounds, strict=True):
         if any(abs(a - b) > _TOLERANCE * max(1.0, abs(a)) for a, b in zip(before, after, strict=True)):
             old_text, new_text = (" ".join(f"{number:.6g}" for number in corner) for corner in (before, after))
-            pair.figures.append(Figure(name, old_text, new_text))
+            pair.figures.append(Figure(name, old_text, new_text, unit))
     if not pair.figures:
         pair.add(phrase("contents changed, with the same triangles and size"), None)
 
@@ -52,7 +53,7 @@ def compare_meshes(pair: FilePair) -> None:
 def mesh_contents(version: Version, path: str) -> Phrase | None:
     """Return the number of triangles and the size of a mesh; None for a large file.
 
-    The size is in the units of the file.
+    The size is in meters if the format states its unit, and else in the units of the file.
     """
     file = version.file(path)
     if file.stat().st_size > _MAX_CONTENT_BYTES:
@@ -60,6 +61,8 @@ def mesh_contents(version: Version, path: str) -> Phrase | None:
     mesh = _read(file)
     low, high = mesh.bounds
     size = " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True))
+    if file.suffix.lower() in _METRIC_SUFFIXES:
+        return counted("{count} triangle, {size} m", "{count} triangles, {size} m", mesh.count, size=size)
     return counted(
         "{count} triangle, {size} in the units of the file",
         "{count} triangles, {size} in the units of the file",
