@@ -63,6 +63,16 @@ def test_changes_of_names_in_worlds_are_breaking(repository, compare, old, new, 
     assert bool(breaking(result)) is is_breaking
 
 
+def test_ray_and_lidar_are_one_element(repository, compare):
+    lidar = "<lidar><range><max>9</max></range></lidar>"
+    assert lidar in WORLD
+    repository.commit({PATH: WORLD.replace(lidar, lidar.replace("lidar", "ray"))})
+    repository.write({PATH: WORLD})
+    assert compare(repository).subjects == []
+    repository.write({PATH: WORLD.replace("<max>9<", "<max>8<")})
+    assert sentences(subject(compare(repository), PATH)) == [f"{ROBOT} link base sensor lidar lidar range max: 9 -> 8"]
+
+
 def test_renamed_world_is_compared_with_the_old_one(repository, compare):
     repository.commit({PATH: WORLD})
     repository.write({PATH: WORLD.replace('"yard"', '"park"').replace("0.001", "0.002")})

@@ -17,6 +17,8 @@ from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.xmltree import Element
 
+SAME_TAGS = {"ray": "lidar"}
+"""Tags of SDF with the same meaning: an older one, and the one that replaced it."""
 _ATTRIBUTES_WITHOUT_NUMBERS = frozenset({"name", "reference", "filename", "version"})
 _STRAY_TEXT = "text between its elements"
 """The end of the path of a text that means nothing, such as a character left over from a patch."""
@@ -232,7 +234,8 @@ def _remove_common(
         else:
             part = parts.get(id(element), "")
             name = _find_name(element, {id(element): renamed.get(part, part)} if part else {}) or ""
-            unmatched.setdefault(f"{element.tag} {renamed.get(name, name)}", []).append((key, element))
+            tag = SAME_TAGS.get(element.tag, element.tag)
+            unmatched.setdefault(f"{tag} {renamed.get(name, name)}", []).append((key, element))
     return unmatched
 
 

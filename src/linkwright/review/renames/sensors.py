@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from linkwright.descriptions.comparison import Difference
+from linkwright.descriptions.comparison import SAME_TAGS, Difference
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.loading.lean_dataclasses import replace
@@ -15,8 +15,6 @@ from linkwright.review.renames.replaced_plugins import PluginReplacement
 from linkwright.xmltree import Element
 
 _SENSOR = "sensor"
-_SAME_TAGS = {"ray": "lidar"}
-"""Tags of the same meaning, with the one under which their values are compared."""
 _SAME_TYPES = {"ray": "lidar", "gpu_ray": "lidar", "gpu_lidar": "lidar"}
 """Types of sensors with the same messages."""
 _FRAME_TAG = re.compile(r"((gz|ignition)_)?frame_id|frame_?[nN]ame")
@@ -118,7 +116,7 @@ def _read_values(element: Element, path: str = "") -> dict[str, str]:
     """Return the texts in an element, by the tags of the elements around them."""
     values: dict[str, str] = {}
     for child in element.elements():
-        name = " ".join(filter(None, (path, _SAME_TAGS.get(child.tag, child.tag))))
+        name = " ".join(filter(None, (path, SAME_TAGS.get(child.tag, child.tag))))
         text = " ".join(child.text().split())
         if text:
             values[name] = text
