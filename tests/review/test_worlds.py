@@ -50,8 +50,7 @@ ROBOT = "world yard model robot"
         ("drive/cmd<", "cmd<",
          f"{ROBOT} plugin drive ros remapping: cmd_vel:=drive/cmd -> cmd_vel:=cmd", True),
         ('"base">0 1 0', '"base">0 -1 0', f"{ROBOT} joint wheel_joint axis xyz: 0 1 0 -> 0 -1 0", False),
-        ('<collision name="c">', '<collision name="d">',
-         f"{ROBOT} link base collision d added: geometry box size 1 1 1", False),
+        ('<collision name="c">', '<collision name="d">', f"{ROBOT} link base collision c renamed to 'd'", False),
     ],
 )  # fmt: skip
 def test_changes_of_names_in_worlds_are_breaking(repository, compare, old, new, expected, is_breaking):

@@ -8,7 +8,22 @@ from collections.abc import Iterator, Sequence
 from linkwright.descriptions.comparison.numbers import normalize_numbers
 from linkwright.xmltree import Element
 
-_RENAMABLE_TAGS = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin", "include", "transmission"})
+_RENAMABLE_TAGS = frozenset(
+    {
+        "world",
+        "model",
+        "link",
+        "joint",
+        "sensor",
+        "frame",
+        "plugin",
+        "include",
+        "transmission",
+        "visual",
+        "collision",
+        "light",
+    }
+)
 """The tags of elements that are recognized under another name."""
 _MIN_SIMILARITY = 0.5
 """The minimum similarity, from 0 to 1, of a removed and an added element that count as renamed."""
