@@ -47,7 +47,7 @@ def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phra
 def _corrects_frame(difference: Difference, old: Robot, new: Robot) -> bool:
     """Return whether the frame of messages that no link of the robot had becomes that of a link which it had already.
 
-    Nobody could transform messages in the old frame.
+    Until then, users could not transform the messages.
     """
     if _FRAME_TAG.fullmatch(difference.property.split(" ")[-1]) is None or not difference.old or not difference.new:
         return False
