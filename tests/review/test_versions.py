@@ -264,6 +264,18 @@ def test_removed_submodule_that_nothing_uses_breaks_nobody(package, compare, tmp
     assert "submodule removed" in sentences(subject(result, "vendor"))
 
 
+def test_removed_submodule_without_an_entry_in_gitmodules_breaks_nobody(package, compare):
+    """No clone of the repository has its files."""
+    commit = package.git("rev-parse", "HEAD").strip()
+    package.git("update-index", "--add", "--cacheinfo", f"160000,{commit},vendor")
+    package.git("commit", "--quiet", "--message", "gitlink")
+    package.git("rm", "--quiet", "--cached", "vendor")
+    package.git("commit", "--quiet", "--message", "no gitlink")
+    result = compare(package, "HEAD~1..HEAD")
+    assert breaking(result) == []
+    assert sentences(subject(result, "vendor")) == ["submodule without an entry in .gitmodules removed"]
+
+
 @pytest.mark.parametrize("name", ["arm_description", "arm"])
 def test_submodule_that_files_replace_is_not_removed(package, compare, tmp_path, name):
     """A package that is renamed at the same time has the files in its new folder."""

@@ -320,15 +320,19 @@ class _Reviewer:
     def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules, whose contents are unknown.
 
-        One that the files no longer name, although they did, is not breaking.
+        One that the files no longer name, although they did, is not breaking, nor is one without an entry in
+        ``.gitmodules``, whose files no clone of the repository has.
         """
         reason_of_use = phrase("packages and programs that use the files in it do not build or start")
         for file in self._changed_files:
             if self._is_removed_submodule(file):
                 name = PurePosixPath(file.path).name
                 is_dropped = is_named(self._versions.old, name) and not is_named(self._versions.new, name)
+                text = phrase("submodule removed")
+                if file.path not in self._versions.old.submodules:
+                    text, is_dropped = phrase("submodule without an entry in .gitmodules removed"), True
                 effect, reason = (Effect.CHANGED, None) if is_dropped else (Effect.BREAKING, reason_of_use)
-                change = Change(phrase("submodule removed"), effect, reason)
+                change = Change(text, effect, reason)
                 yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
 
     def _is_removed_submodule(self, file: ChangedFile) -> bool:

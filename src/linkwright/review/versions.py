@@ -43,6 +43,8 @@ _FILLED_SUFFIXES = (
 _INIT_FILE = "__init__.py"
 _MAX_EMPTY_BYTES = 64
 """The maximum size of a file that has only blanks."""
+_SUBMODULE = re.compile(r"^[ \t]*path[ \t]*=[ \t]*\"?(?P<path>.+?)\"?[ \t\r]*$", re.MULTILINE)
+"""The line of ``.gitmodules`` with the path of a submodule."""
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 
 
@@ -167,6 +169,11 @@ class Version:
     def macros(self) -> frozenset[str]:
         """The names of the macros that the descriptions of the version define."""
         return find_macros(map(self.text, self._descriptions))
+
+    @cached_property
+    def submodules(self) -> frozenset[str]:
+        """The paths of the submodules in ``.gitmodules``."""
+        return frozenset(match["path"] for match in _SUBMODULE.finditer(self.text(".gitmodules")))
 
     @cached_property
     def _descriptions(self) -> list[str]:

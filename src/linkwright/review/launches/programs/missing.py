@@ -63,7 +63,6 @@ _UNKNOWN_PROGRAM = re.compile(r"[$/*:\s]")
 """A character of a name that is computed, or that is the class of a component."""
 _FILE_OF_PACKAGE = re.compile(r"\$\(find-pkg-share (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]*\.(?:launch|xml|py|ya?ml))")
-_SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -122,7 +121,7 @@ class RepositoryPackage:
     @cached_property
     def may_generate(self) -> bool:
         """Whether the build can make files, or a part of the package is in another repository."""
-        submodules = (PurePosixPath(match["path"]) for match in _SUBMODULE.finditer(self.version.text(".gitmodules")))
+        submodules = map(PurePosixPath, self.version.submodules)
         commands = _COMMENT.sub("", self.build_text)  # the comments of catkin's template tell how to rename a program
         return _GENERATION.search(commands) is not None or any(path.is_relative_to(self.folder) for path in submodules)
 
