@@ -57,9 +57,7 @@ from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.texts.list_changes import list_items
 
-_USER_INTERFACE_PROGRAM = re.compile(
-    r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$"
-)
+_USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$")
 """Programs that offer nothing to other programs."""
 _JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
