@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import subject
+from tests.review.conftest import breaking, subject
 
 XML = """<launch>
   <arg name="namespace"{default}/>
@@ -47,6 +47,31 @@ def test_lost_outer_namespace_is_breaking_if_the_inner_one_is_known(review_chang
     )
     assert len(changes) == 2
     assert (found == changes) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("package", "argument", "values", "count"),
+    [
+        ("eyes", "eye_namespace1", ("left", ""), 1),
+        ("eyes", "ns", ("left", "right"), 1),
+        ("eyes", "ns", ("left", "/left"), 0),
+        ("eyes", "ns", ("$(env SIDE)", "$(env SIDE)_eye"), 0),
+        ("eyes", "use_namespace", ("false", "true"), 0),
+        ("eyes", "label", ("left", "right"), 0),
+        ("arm_description", "eye_namespace1", ("left", ""), 0),
+    ],
+)
+def test_new_namespace_of_a_file_of_another_repository_is_breaking(
+    repository, compare, package, argument, values, count
+):
+    text = (
+        f'<launch><include file="$(find-pkg-share {package})/launch/eyes.launch.xml">'
+        f'<arg name="{argument}" value="VALUE"/></include></launch>\n'
+    )
+    path = "arm_description/launch/arm.launch.xml"
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, path: text.replace("VALUE", values[0])})
+    repository.write({path: text.replace("VALUE", values[1])})
+    assert len(breaking(compare(repository))) == count
 
 
 INCLUDED = '<launch><node pkg="arm" exec="driver" name="driver"{}/></launch>\n'

@@ -66,6 +66,14 @@ def test_publisher_of_joint_states_with_a_window_is_no_missing_node(repository, 
     assert breaking(compare(repository)) == expected
 
 
+@pytest.mark.parametrize(("program", "count"), [("joint_state_publisher_gui", 1), ("rviz2", 0)])
+def test_new_namespace_of_a_publisher_with_a_window_is_breaking(review_changes, program, count):
+    text = f'<launch>\n  <node pkg="{program}" exec="{program}" namespace="left"/>\n</launch>\n'
+    changes, breaking_changes = review_changes("arm.launch.xml", text, '"left"', '"right"')
+    assert len(changes) == 1
+    assert len(breaking_changes) == count
+
+
 OPTIONS = """from argparse import ArgumentParser
 from launch import LaunchDescription
 from launch_ros.actions import Node

@@ -26,6 +26,7 @@ from linkwright.review.launches.conditions import evaluate_condition, find_added
 from linkwright.review.launches.filter_topics import find_filter_topic_reason
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
+    find_included_renaming_reason,
     find_lost_target_reason,
     find_node_remapping_reason,
     find_remapping_reason,
@@ -57,9 +58,7 @@ from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.texts.list_changes import list_items
 
-_USER_INTERFACE_PROGRAM = re.compile(
-    r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$"
-)
+_USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$")
 """Programs that offer nothing to other programs."""
 _JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
@@ -308,7 +307,8 @@ def find_setting_reason(
         return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
-    values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
+    sides = ((old_outline, old), (new_outline, new))
+    values = (outline.resolve(text or "") for outline, text in sides)
     hardware_reason = find_hardware_reason(setting.rpartition(" ")[2], *values)
     if entry.kind in (BUILDER, "include") and hardware_reason is not None:
         return hardware_reason
@@ -316,13 +316,13 @@ def find_setting_reason(
         return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return find_renaming_reason(old, new, old_outline, new_outline)
+    renaming_reason = find_included_renaming_reason(entry, setting, old, new, old_outline, new_outline)
+    if renaming_reason is not None:
+        return renaming_reason
     if entry.kind == "include" and setting in _GAZEBO_ARGUMENTS:
         return _find_option_reason(old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == _WINDOW_ARGUMENT and _CLASSIC_PACKAGE in entry.name:
-        opens = [
-            outline.resolve(text or "true").lower() not in ("false", "0")
-            for outline, text in ((old_outline, old), (new_outline, new))
-        ]
+        opens = [outline.resolve(text or "true").lower() not in ("false", "0") for outline, text in sides]
         return _make_window_reason() if opens == [True, False] else None
     if entry.kind == SERVER_PARAMETER and setting == "value":
         name = PARAMETER + entry.name.replace("/", ".")

@@ -9,6 +9,7 @@ from linkwright.review.breaking import name_reason, names_reason, possible_name_
 from linkwright.review.launches.chosen_texts import is_choice
 from linkwright.review.launches.matching import find_loaded_class
 from linkwright.review.launches.outlines import PARAMETER, REMAPPING, Entry, LaunchOutline, without_condition
+from linkwright.review.launches.programs.default_names import find_package_folders
 from linkwright.review.launches.programs.sides import (
     Side,
     find_old_side,
@@ -27,6 +28,9 @@ _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
+_PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? ([\w.-]+)\)")
+_NAMESPACE_ARGUMENT = re.compile(r"(?!use_)(\w+_)?(namespace|ns)\d*")
+"""The arguments whose values, judging by the argument name, are namespaces."""
 _ENABLED_CONDITION = re.compile(r" \((if (true|1)|unless (false|0))\)", re.IGNORECASE)
 _DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
@@ -139,6 +143,38 @@ def find_renaming_reason(
     ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def find_included_renaming_reason(
+    entry: Entry,
+    argument: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+) -> Phrase | None:
+    """Return the reason why another namespace for an included file of another repository is breaking, or None.
+
+    What the file does with the argument is unknown. Its name tells that it is a namespace. The old namespace and the
+    new one must be certain.
+
+    Args:
+        entry: an include; other actions have no such reason.
+        argument: the name of the argument.
+        old: its old value; None if it was not passed.
+        new: its new value; None if it is no longer passed.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
+    """
+    package = _PACKAGE.match(entry.name) if entry.kind == "include" else None
+    root = new_outline.root
+    if package is None or root is None or _NAMESPACE_ARGUMENT.fullmatch(argument) is None or old is None or new is None:
+        return None
+    names = [resolve_name(value, outline).strip("\"'/") for value, outline in ((old, old_outline), (new, new_outline))]
+    is_certain = all(_NAME.fullmatch(name or "/") for name in names)
+    if names[0] == names[1] or not is_certain or package[1] in find_package_folders(root):
+        return None
+    return phrase("the topics of the nodes that it starts get other names")
 
 
 def names_looked_up_frame(argument: str, outline: LaunchOutline) -> bool:

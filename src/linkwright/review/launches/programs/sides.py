@@ -43,6 +43,7 @@ _OUTPUTS = {
 _ALL_OUTPUTS: dict[str, set[str]] = {
     "move_base/move_base": {"cmd_vel", "current_goal", "goal", "make_plan", "clear_costmaps", "clear_unknown_space"},
     "joint_state_publisher/joint_state_publisher": {"joint_states"},
+    "joint_state_publisher_gui/joint_state_publisher_gui": {"joint_states"},
     "robot_state_publisher/robot_state_publisher": {"robot_description"},
     "robot_state_publisher/state_publisher": set(),
     "tf2_ros/static_transform_publisher": set(),
