@@ -155,8 +155,7 @@ def find_included_renaming_reason(
 ) -> Phrase | None:
     """Return the reason why another namespace for an included file of another repository is breaking, or None.
 
-    What the file does with the argument is unknown. Its name tells that it is a namespace. The old namespace and the
-    new one must be certain.
+    The name of the argument tells that it is a namespace. The old namespace and the new one must be certain.
 
     Args:
         entry: an include; other actions have no such reason.
