@@ -294,20 +294,3 @@ def test_plugins_that_move_into_a_gazebo_element_are_matched_by_name(repository,
     lines = sentences(subject(compare(repository), PATH))
     replaced = [line for line in lines if "replaced by" in line]
     assert [line.count(f"plugin '{name}'") for line, name in zip(sorted(replaced), "ab", strict=True)] == [2, 2]
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "is_breaking"),
-    [
-        ("bese", "base", False),  # nobody could transform the messages
-        ("base", "bese", True),
-        ("map", "odom", True),  # other nodes may publish both
-    ],
-)
-def test_frame_that_no_link_had_is_corrected(repository, compare, old, new, is_breaking):
-    plugin = '<gazebo><plugin name="scan" filename="libscan.so"><frameName>{}</frameName></plugin></gazebo>'
-    repository.commit({PATH: robot_text(plugin.format(old))})
-    repository.write({PATH: robot_text(plugin.format(new))})
-    result = compare(repository)
-    assert sentences(subject(result, PATH)) == [f"extension 'gazebo': plugin scan frameName {old} -> {new}"]
-    assert bool(breaking(result)) is is_breaking

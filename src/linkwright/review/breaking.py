@@ -21,8 +21,6 @@ _CAMERA_NAME = re.compile(r"camera_?name", re.IGNORECASE)
 """The parameter of a camera of gazebo_ros that is the first part of the names of its topics."""
 _SENSOR_FRAME = re.compile(r"(?:(?:gz|ignition|optical)_)?frame_id")
 """The tags of the frame of a sensor's messages."""
-_FRAME_TAG = re.compile(r"@?(?:(?:gz|ignition|optical)_)?frame_?(?:id|name)", re.IGNORECASE)
-"""The tags and attributes of the frame of messages, also those of plugins."""
 _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
 _PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
@@ -39,20 +37,9 @@ def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phra
         return _find_link_reason(difference)
     if difference.subject == "joint":
         return _find_joint_reason(difference, old, new)
-    if difference.subject == "extension" and not _corrects_frame(difference, old, new):
+    if difference.subject == "extension":
         return find_extension_reason(difference, find_lost_interfaces(old.extensions, new.extensions))
     return None
-
-
-def _corrects_frame(difference: Difference, old: Robot, new: Robot) -> bool:
-    """Return whether the frame of messages that no link of the robot had becomes that of a link which it had already.
-
-    Until then, users could not transform the messages.
-    """
-    if _FRAME_TAG.fullmatch(difference.property.split(" ")[-1]) is None or not difference.old or not difference.new:
-        return False
-    old_frame, new_frame = (frame.strip().lstrip("/") for frame in (difference.old, difference.new))
-    return old_frame not in old.links and new_frame in old.links and new_frame in new.links
 
 
 def _find_link_reason(difference: Difference) -> Phrase | None:
