@@ -89,6 +89,27 @@ def test_lost_names_are_breaking(review_file):
     ]
 
 
+def test_a_name_that_moves_into_an_included_file_is_not_lost(repository, compare):
+    body = ARM[ARM.index('      <body name="hand"') : ARM.index("    </body>\n  </worldbody>")]
+    part = f"<mujoco><worldbody>{body}</worldbody></mujoco>"
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: ARM})
+    new = ARM.replace(body, "").replace("<worldbody>", '<include file="parts/hand.xml"/><worldbody>')
+    repository.write({PATH: new, "arm/mjcf/parts/hand.xml": part})
+    result = compare(repository)
+    assert breaking(result) == []
+    assert "body 'hand' removed" in sentences(subject(result, PATH))
+
+
+@pytest.mark.parametrize("address", ["arm.xml", "../../../outside.xml", "{outside}", "."])
+def test_includes_of_itself_or_outside_are_not_read(review_file, tmp_path, address):
+    """The names that a file outside the repository has are lost nevertheless."""
+    outside = tmp_path / "outside.xml"
+    outside.write_text(ARM, encoding="utf-8")
+    include = f'<include file="{address.format(outside=outside)}"/>'
+    result = review_file(ARM, ARM.replace("<worldbody>", f"{include}<worldbody>").replace(SITE, ""))
+    assert breaking(result) == ["site 'tip' removed"]
+
+
 def test_a_renamed_body_keeps_its_elements(review_file):
     result = review_file(ARM, ARM.replace('name="hand"', 'name="gripper"'))
     assert sentences(subject(result, PATH)) == ["body 'hand' renamed to 'gripper'"]

@@ -10,18 +10,8 @@ from linkwright.xmltree import Element
 
 _RENAMABLE_TAGS = frozenset(
     {
-        "world",
-        "model",
-        "link",
-        "joint",
-        "sensor",
-        "frame",
-        "plugin",
-        "include",
-        "transmission",
-        "visual",
-        "collision",
-        "light",
+        *("world", "model", "link", "joint", "frame", "include", "transmission"),
+        *("visual", "collision", "light", "sensor", "plugin"),
     }
 )
 """The tags of elements that are recognized under another name."""

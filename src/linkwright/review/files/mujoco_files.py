@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, joined_first, phrase, quoted
 from linkwright.review.breaking import name_reason
 from linkwright.review.file_pair import FilePair
 from linkwright.review.lenient_xml import read_lenient_root
@@ -84,8 +85,8 @@ def is_mujoco_file(file: Path) -> bool:
 def compare_mujoco_files(pair: FilePair) -> None:
     """Compare two versions of a robot or world of MuJoCo.
 
-    Included files and the values of default classes are not put in. Elements without a name are paired with those of
-    the same kind in the same body.
+    Included files and the values of default classes are not put in, but a name that moves into an included file is not
+    lost. Elements without a name are paired with those of the same kind in the same body.
     """
     versions = pair.read(_read)
     if versions is None:
@@ -99,15 +100,16 @@ def compare_mujoco_files(pair: FilePair) -> None:
         text = phrase("{element} renamed to '{new}'", element=f"{kind} '{old_name}'", new=name)
         pair.add(text, pair.location(item.element.span()), name_reason(old_name) if kind in _CALLED else None)
     bodies = [{f"{_BODY} '{item.name}'" for item in items if item.kind == _BODY} for items in (old_items, new_items)]
+    included = {(item.kind, item.name) for item in _read_included(pair.versions.new, pair.new_path, new_items, set())}
     reported = (bodies[0] ^ bodies[1]) - set(owners.values())
     for old, new in _match(old_items, new_items, renamed):
         if old is not None and new is not None:
-            if old.content != new.content:
-                pair.add(_describe_change(old, new), pair.location(new.element.span()))
+            pair.add(_describe_change(old, new), pair.location(new.element.span()))
         elif new is not None and (new.name or new.owner not in reported):
             pair.add(_describe_added(new), pair.location(new.element.span()))
         elif old is not None and (old.name or old.owner not in reported):
-            reason = name_reason(old.name) if old.name and old.kind in _CALLED else None
+            is_lost = old.name and old.kind in _CALLED and (old.kind, old.name) not in included
+            reason = name_reason(old.name) if is_lost else None
             text = phrase("{part} removed", part=old.label)
             pair.add(text, pair.location(old.element.span(), is_old=True), reason)
 
@@ -132,6 +134,33 @@ def _read(file: Path) -> list[_Item]:
     return list(_list_items(read_lenient_root(file), "", ""))
 
 
+def _read_included(version: Version, path: str, items: Iterable[_Item], seen: set[str]) -> Iterator[_Item]:
+    """Yield the elements of the files that a file includes, directly or not. Unreadable files have none.
+
+    Args:
+        version: the version that contains the file.
+        path: the path of the file relative to the root of the repository.
+        items: the elements of the file.
+        seen: the paths that were read already, which are extended.
+    """
+    for item in items:
+        file = posixpath.normpath(posixpath.join(posixpath.dirname(path), item.name))
+        if (
+            item.kind != _INCLUDE
+            or file in seen
+            or file.startswith("..")
+            or not is_mujoco_file(version.file(file))
+        ):
+            continue
+        seen.add(file)
+        try:
+            included = _read(version.file(file))
+        except (LinkwrightError, OSError, ValueError, RecursionError):
+            continue
+        yield from included
+        yield from _read_included(version, file, included, seen)
+
+
 def _list_items(element: Element, section: str, owner: str) -> Iterator[_Item]:
     for child in element.elements():
         kind, child_type = _TYPES.get(child.tag, (child.tag, ""))
@@ -142,7 +171,7 @@ def _list_items(element: Element, section: str, owner: str) -> Iterator[_Item]:
         if child.tag == _DEFAULT:
             name = values.pop("class", "main")
         if child.tag in _FILES and not name:
-            name = values.get("file", "") if child.tag == _INCLUDE else PurePosixPath(values.get("file", "")).stem
+            name = values.pop("file", "") if child.tag == _INCLUDE else PurePosixPath(values.get("file", "")).stem
         if child_type:
             values = {_TYPE: child_type, **values}
         if child.tag != _DEFAULT and (name or values or owner):
@@ -185,9 +214,9 @@ def _group_by_content(
 def _match(
     old_items: Iterable[_Item], new_items: Iterable[_Item], renamed: Mapping[tuple[str, str], str]
 ) -> Iterator[tuple[_Item | None, _Item | None]]:
-    """Yield both versions of each element; None for the version that lacks it.
+    """Yield both versions of each element that differs; None for the version that lacks it.
 
-    Several elements with one key, which have no name, are paired if they are equal, and the others in their order.
+    Of several elements with one key, which have no name, those without an equal one are paired in their order.
     """
     groups: dict[tuple[str, ...], tuple[list[_Item], list[_Item]]] = defaultdict(lambda: ([], []))
     for item in new_items:
@@ -195,15 +224,20 @@ def _match(
     for item in old_items:
         groups[_key(item, renamed.get((item.kind, item.name), item.name))][0].append(item)
     for old, new in groups.values():
-        left = list(old)
-        unpaired = []
-        for item in new:
-            equal = next((before for before in left if before.content == item.content), None)
-            if equal is None:
-                unpaired.append(item)
-            else:
-                left.remove(equal)
-        yield from zip_longest(left, unpaired)
+        common = Counter(item.content for item in old) & Counter(item.content for item in new)
+        yield from zip_longest(_drop_common(old, common), _drop_common(new, common))
+
+
+def _drop_common(items: Iterable[_Item], common: Counter[tuple[object, ...]]) -> list[_Item]:
+    """Return the elements without those that have an equal counterpart in the other version."""
+    left = Counter(common)
+    rest = []
+    for item in items:
+        if left[item.content]:
+            left[item.content] -= 1
+        else:
+            rest.append(item)
+    return rest
 
 
 def _key(item: _Item, name: str) -> tuple[str, ...]:
