@@ -148,7 +148,7 @@ def _read_included(version: Version, path: str, items: Iterable[_Item], seen: se
         if (
             item.kind != _INCLUDE
             or file in seen
-            or file.startswith("..")
+            or file.startswith(("..", "/"))
             or not is_mujoco_file(version.file(file))
         ):
             continue
