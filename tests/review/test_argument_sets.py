@@ -68,6 +68,18 @@ def test_part_behind_a_switch_is_compared_with_its_opposite(package, compare):
     assert (changed_subject.cases, change.cases) == (["", "sim:=true"], ("sim:=true",))
 
 
+def test_attribute_that_a_call_newly_passes_is_one_change_for_all_values_of_an_argument(package, compare):
+    include = '<xacro:include filename="$(find absent)/lidar.xacro"/><xacro:lidar parent="base_link" {}/></robot>'
+    files = {PATH: ARM.replace("</robot>", include.format("")), "arm_description/launch/arm.launch.py": LAUNCH}
+    package.commit(files)
+    package.write({PATH: ARM.replace("</robot>", include.format('namespace="$(arg tool)"'))})
+    review_subject = subject(compare(package), PATH)
+    assert len(review_subject.cases) == 2
+    (change,) = review_subject.changes
+    assert "'lidar': @namespace added" in str(change.sentence)
+    assert change.cases == ()
+
+
 def test_started_robot_that_another_one_includes_is_compared(package, compare):
     launch = LAUNCH.replace(', mappings={"tool": tool}', "")
     world = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm_in_gazebo">

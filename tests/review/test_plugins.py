@@ -27,6 +27,9 @@ def robot_text(*extensions: str) -> str:
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
+        ([HARDWARE.format(joint=JOINT.format(name="a"))],
+         [HARDWARE.format(joint=JOINT.format(name="/left/a")).replace('name="arm"', 'name="/left/arm"')],
+         "extension 'ros2_control arm' renamed to 'ros2_control /left/arm'", True),
         ([LIGHT], [LIGHT, DOCK],
          "extension 'gazebo' added: plugin 'dock' (filename=libdock.so, ros remapping ~/out:=dock)", False),
         ([LIGHT, DRIVE], [LIGHT],
@@ -249,6 +252,21 @@ def test_topics_of_a_source_that_an_added_plugin_has_are_not_lost(repository, co
     repository.commit({PATH: robot_text(LIGHT), "arm_description/driver.py": source + lost})
     repository.write({PATH: robot_text(LIGHT, added), "arm_description/driver.py": source})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(("new", "is_breaking"), [("scan", False), ("front/scan", True)])
+@pytest.mark.parametrize("form", ["{}", "<xacro:macro name='scan' params='side'>{}</xacro:macro>"])
+def test_topic_of_a_sensor_without_its_slash_is_the_same(repository, compare, form, new, is_breaking):
+    sensor = "<gazebo reference='base'><sensor name='s' type='gpu_lidar'><topic>{}</topic></sensor></gazebo>"
+    path = PATH.replace(".urdf", ".urdf.xacro")
+    for topic in ("/scan", new):
+        text = robot_text(form.format(sensor.format(topic)))
+        repository.write({path: text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')})
+        if topic == "/scan":
+            repository.commit({})
+    result = compare(repository)
+    assert [f"/scan -> {new}" in line for line in sentences(subject(result, path))] == [True]
+    assert bool(breaking(result)) is is_breaking
 
 
 SPACE = """<gazebo><plugin name="{}" filename="lib{}.so"><ros><namespace>{}</namespace>

@@ -278,6 +278,17 @@ def test_file_with_breaking_changes_only_has_no_heading_of_its_own():
     assert "field removed" in report
 
 
+@pytest.mark.parametrize(("count", "heading"), [(1, "file removed: value 0"), (40, "file removed:")])
+def test_only_the_start_of_a_long_breaking_change_is_bold(count, heading):
+    values = ", ".join(f"value {number}" for number in range(count))
+    change = Change(phrase("file removed: {items}", items=values), Effect.BREAKING, phrase("programs fail"))
+    result = Review("a", "b", [Subject(SubjectKind.INTERFACE, "a.msg", "a.msg", "a.msg", [change])])
+    page = as_html(result)
+    assert f"- **{heading}**" in as_markdown(result)
+    assert page.count(f"<strong class='breaking'>{heading}</strong>") == 2
+    assert page.count(f"value {count - 1}") == (2 if count == 1 else 1)  # the list at the top is short
+
+
 def test_added_files_with_the_same_summary_are_not_the_same(package, compare):
     launch = "<launch><arg name='robot' default='{}'/><node pkg='a' type='b' name='c'/></launch>"
     package.commit({f"arm_description/launch/{name}.launch": launch.format(name) for name in ("left", "right")})

@@ -42,6 +42,7 @@ ROBOT = "world yard model robot"
          (f"{ROBOT} link base sensor lidar type=gpu_lidar removed: topic scan, gz_frame_id laser, "
           "lidar range max 9"), True),
         ("<topic>scan<", "<topic>front/scan<", f"{ROBOT} link base sensor lidar topic: scan -> front/scan", True),
+        ("<topic>scan<", "<topic>/scan<", f"{ROBOT} link base sensor lidar topic: scan -> /scan", False),
         ("<topic>scan</topic>", "", f"{ROBOT} link base sensor lidar topic scan removed", True),
         (">laser<", ">lidar<", f"{ROBOT} link base sensor lidar gz_frame_id: laser -> lidar", True),
         (PLUGIN, "",

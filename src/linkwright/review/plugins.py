@@ -232,15 +232,17 @@ def find_sensor_reason(sensor: Element) -> Phrase | None:
 
 
 def names_same_topic(difference: Difference, old: Iterable[Element], new: Iterable[Element]) -> bool:
-    """Return whether a parameter of a plugin only gains or loses the slash before a topic, which names the same topic.
+    """Return whether a topic only gains or loses the slash before it, and thus remains the same topic.
 
-    This is so if the namespace of the plugin is the root in both versions.
+    This is so for a sensor of Gazebo, and for a plugin if its namespace is the root in both versions.
 
     Args:
         difference: the difference between both versions.
         old: the extensions of the old robot.
         new: the extensions of the new robot.
     """
+    if is_same_sensor_topic(difference):
+        return True
     match = _PLUGIN_PARAMETER.fullmatch(difference.property)
     if match is None or difference.kind != "changed" or not difference.old or not difference.new:
         return False
@@ -248,6 +250,14 @@ def names_same_topic(difference: Difference, old: Iterable[Element], new: Iterab
     if not is_topic or not differ_only_in_slash(difference.old, difference.new):
         return False
     return all(is_in_root_namespace(elements, match["name"]) for elements in (old, new))
+
+
+def is_same_sensor_topic(difference: Difference) -> bool:
+    """Return whether the topic of a sensor only gains or loses the slash before it, which Gazebo adds."""
+    path = f"{difference.name} {difference.property}".strip()
+    if _SENSOR_TOPIC.fullmatch(path) is None or not difference.old or not difference.new:
+        return False
+    return differ_only_in_slash(difference.old, difference.new)
 
 
 def differ_only_in_slash(old: str, new: str) -> bool:

@@ -79,7 +79,12 @@ def _get_name(element: Element) -> str:
 
 
 def _compute_similarity(old: Element, new: Element) -> float:
-    """Return the share of interfaces that two elements have in common."""
-    old_interfaces, new_interfaces = interfaces_of([old]), interfaces_of([new])
+    """Return the share of interfaces that two elements have in common.
+
+    A sensor or joint with another namespace, such as ``/imu`` instead of ``imu``, has the same interfaces.
+    """
+    old_interfaces, new_interfaces = (
+        {(owner.rpartition("/")[2], name) for owner, name in interfaces_of([element])} for element in (old, new)
+    )
     total = len(old_interfaces | new_interfaces)
     return len(old_interfaces & new_interfaces) / total if total else 0.0

@@ -37,7 +37,7 @@ def collect_new_values(pair: PartPair, macro: str | None) -> dict[str, str]:
 
 
 def names_same_topic_by_default(pair: PartPair, macro: str | None, difference: PartDifference) -> bool:
-    """Return whether a topic of a plugin only gains or loses its first slash, and the plugin has no namespace.
+    """Return whether a topic of a sensor, or of a plugin without a namespace, only gains or loses its first slash.
 
     Args:
         pair: both versions of the file.
@@ -59,6 +59,8 @@ def names_same_topic_by_default(pair: PartPair, macro: str | None, difference: P
         for plugin in find_plugins(outline.root)
         if element is not None and any(child.offset == element.offset for child in plugin.walk())
     ]
+    if not plugins:
+        return elements[1] is not None and elements[1].tag == "topic"  # of a sensor; Gazebo adds the slash
     return len(plugins) == len(elements) and all(
         is_in_root_namespace([plugin], find_plugin_name(plugin), lambda text: evaluate_text(text, values))
         for plugin in plugins

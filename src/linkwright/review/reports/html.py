@@ -33,6 +33,7 @@ from linkwright.review.reports.sentences import (
     format_title,
     get_path_state,
     list_other_files,
+    split_heading,
 )
 from linkwright.review.texts.excerpts import shorten
 
@@ -40,6 +41,8 @@ _ImageKey = tuple[tuple[str, bytes, bytes], ...]
 """The name of each view of a file, with the image of the old and of the new version."""
 _MAX_CHARACTERS = 1000
 """The maximum number of characters of a change that are shown without a click."""
+_MAX_BREAKING_REST = 200
+"""The maximum number of characters after the start of a breaking change in the list at the top of the page."""
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -122,7 +125,8 @@ def _render_breaking_changes(review: Review) -> Iterator[str]:
         line = f":{change.location.line}" if change.location is not None and [change.location.file] == paths else ""
         place = f"{localized(format_paths(paths))}{line}"
         cases = format_cases(change, subjects[paths[0]])
-        items.append(f"{_render_change(change, cases)} <code class='soft'>{escape(place)}</code>")
+        text = _render_change(change, cases, max_rest=_MAX_BREAKING_REST)
+        items.append(f"{text} <code class='soft'>{escape(place)}</code>")
     yield from _render_list(phrase("Breaking changes"), items)
 
 
@@ -173,15 +177,28 @@ def _render_changes(section: Section) -> list[str]:
     ]
 
 
-def _render_change(change: Change, cases: Phrase | None) -> str:
-    text = _render_long_text(localized(format_change(change)))
+def _render_change(change: Change, cases: Phrase | None, max_rest: int | None = None) -> str:
+    """Return a change with its reason and argument sets.
+
+    Args:
+        change: the change.
+        cases: the argument sets with which it occurs; None for all of them.
+        max_rest: the number of characters after which the rest of a breaking change is left out; None for no limit.
+    """
+    text, details = localized(format_change(change)), ""
     if change.effect is Effect.BREAKING:
-        text = f"<strong class='breaking'>{text}</strong>"
+        heading, rest = split_heading(text)
+        rest = rest if max_rest is None else shorten(rest, max_rest)
+        if len(rest) > _MAX_CHARACTERS:  # below the reason
+            heading, rest, details = heading.rstrip(":："), "", _render_long_text(rest)
+        text = f"<strong class='breaking'>{escape(heading)}</strong>{escape(rest)}"
+    else:
+        text = _render_long_text(text)
     if change.reason is not None:
         text += f": {_escape_text(change.reason)}"
     if cases is not None:
         text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_escape_text(cases)}</span>"
-    return text
+    return text + details
 
 
 def _render_place(change: Change, subject: Subject) -> str:

@@ -30,6 +30,7 @@ from linkwright.review.reports.sentences import (
     format_title,
     get_path_state,
     list_other_files,
+    split_heading,
 )
 from linkwright.review.texts.excerpts import differing_excerpts, shorten
 
@@ -113,8 +114,9 @@ def _format_path(path: str, state: Phrase | None) -> str:
 
 def _format_breaking_change(paths: Sequence[str], change: Change) -> str:
     reason = "" if change.reason is None else f": {_escape(change.reason, _MAX_LINE)}"
-    text = _escape(format_change(_shorten_values(change)), _MAX_LINE)
-    return f"- **{text}**{reason} ({_format_code(localized(format_paths(paths)))})"
+    heading, rest = split_heading(shorten(localized(format_change(_shorten_values(change))), _MAX_LINE))
+    text = f"**{_escape(heading)}** {_escape(rest)}" if rest else f"**{_escape(heading)}**"
+    return f"- {text}{reason} ({_format_code(localized(format_paths(paths)))})"
 
 
 def _format_section(section: Section) -> str:

@@ -32,6 +32,9 @@ _MAX_NAMED_MISSING = 2
 """The maximum number of such changes that a line names. A reader does not take files with more of them for equal."""
 _MAX_REPEATED_CASES = 40
 """The maximum number of characters of argument sets that several lines in succession repeat."""
+_MAX_HEADING = 120
+"""The maximum number of characters of a line, or of the start of a longer one, that is emphasized."""
+_COLON = re.compile(r":(?= )|：")
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
 
@@ -94,6 +97,17 @@ def format_change(change: Change) -> Phrase:
     if not more:
         return phrase("{change}; also {names}", change=change.sentence, names=listed)
     return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
+
+
+def split_heading(text: str) -> tuple[str, str]:
+    """Return the start of a long line up to its last colon, and the rest, such as the contents of a removed file.
+
+    The rest is empty if the whole line is short, or has no colon near its start.
+    """
+    if len(text) <= _MAX_HEADING:
+        return text, ""
+    ends = [match.end() for match in _COLON.finditer(text, 0, _MAX_HEADING)]
+    return (text[: ends[-1]], text[ends[-1] :]) if ends else (text, "")
 
 
 def _quote_run(names: Sequence[str]) -> Phrase:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 
-from linkwright.review.changes import Change
+from linkwright.review.changes import REMOVED_VALUE, Change
 from linkwright.review.robots.cases import Case
 
 _MIN_LENGTH = 2
@@ -32,7 +32,14 @@ class ArgumentNames:
         return text
 
     def make_key(self, change: Change) -> Hashable:
-        """Return a key that is equal for the same change to names that differ only by the values of arguments."""
+        """Return a key that is equal for the same change to names that differ only by the values of arguments.
+
+        An added attribute, such as one that a call of a missing macro newly passes, is one change whatever value an
+        argument gives it.
+        """
+        is_one_sided = not {"old", REMOVED_VALUE} & change.core.arguments.keys()
+        if change.location is not None and change.property_name.startswith("@") and is_one_sided:
+            return change.location, change.other_locations, change.effect, change.property_name
         if self.values and change.location is not None:
             effect, property_name, values = change.content
             texts = tuple(map(self.translate, values))

@@ -43,6 +43,7 @@ from linkwright.review.plugins import (
     format_contents,
     is_added,
     is_removed,
+    is_same_sensor_topic,
     is_still_offered,
 )
 from linkwright.review.renames.replaced_plugins import PluginReplacement, merge_replaced_plugins
@@ -356,6 +357,7 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str], element
         or _TEMPLATE_VALUE.fullmatch(difference.old or "")
         or _SET_VARIABLE.fullmatch(path)
         or may_be_equal(difference.old, difference.new)
+        or is_same_sensor_topic(difference)
     ):
         return None
     named = None if _is_unused_decoration(difference, elements) else _find_lost_name(difference, path)
