@@ -59,6 +59,30 @@ def test_folder_check_selects_standalone_descriptions(working_directory):
     assert targets == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
 
 
+@pytest.mark.parametrize(
+    ("part", "is_robot"),
+    [
+        ('<link name="base_link"/>', True),
+        ('<xacro:include filename="inner.links"/>', True),
+        ('<material name="red"/>', False),
+        ('<xacro:macro name="arm"><link name="base_link"/></xacro:macro>', False),
+        ('<!-- <xacro:include filename="inner.links"/> --><xacro:property name="a" value="1"/>', False),
+    ],
+)
+def test_robot_with_plugins_and_links_in_included_files_is_checked_in_folder(working_directory, part, is_robot):
+    includes = '<xacro:include filename="$(find arm)/urdf/arm.links"/><gazebo/><xacro:property name="a" value="1"/>'
+    write_files(
+        working_directory,
+        {
+            "arm/package.xml": "<package><name>arm</name></package>",
+            "arm/urdf/arm.urdf.xacro": f'<robot name="arm" {XACRO}>{includes}</robot>',
+            "arm/urdf/arm.links": f"<robot {XACRO}>{part}</robot>",
+            "arm/urdf/inner.links": '<robot><link name="base_link"/></robot>',
+        },
+    )
+    assert [path.name for path in find_targets([working_directory]).files] == ["arm.urdf.xacro"] * is_robot
+
+
 def test_files_included_by_argument_or_environment_are_not_standalone(working_directory):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
       <xacro:arg name="accessories" default="empty.urdf"/><xacro:arg name="model" default="other.urdf"/>

@@ -40,6 +40,26 @@ def test_a_removed_bridge_is_breaking_if_nothing_else_has_its_topic(repository, 
     assert [str(change.reason) for change in changes if change.reason is not None] == ([reason] if reason else [])
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "other", "reason"),
+    [
+        ('"/scan@a/msg/B[gz.B", "/imu@a/msg/B@gz.B"', '"/scan@a/msg/B[gz.B"', "", "'/imu'"),
+        ('"/scan@a/msg/B[gz.B", "/cmd@a/msg/B]gz.B"', '"/scan@a/msg/B[gz.B"', "", None),
+        ('"/scan@a/msg/B[gz.B"', '"/scan@a/msg/B[ignition.B"', "", None),
+        ('"/scan@a/msg/B[gz.B"', "*os.listdir()", "", None),
+        ('"/scan@a/msg/B[gz.B"', "", 'Node(package="arm", executable="scan", remappings=[("a", "scan")])', None),
+    ],
+)
+def test_a_topic_that_a_bridge_loses_from_its_arguments(repository, compare, old, new, other, reason):
+    bridge = 'Node(package="ros_gz_bridge", executable="parameter_bridge", name="b", arguments=[{}]),'
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: LAUNCH.replace("{}", bridge.format(old) + other)})
+    repository.write({PATH: LAUNCH.replace("{}", bridge.format(new) + other)})
+    changes = subject(compare(repository), PATH).changes
+    reasons = [str(change.reason) for change in changes if change.reason is not None]
+    assert [text for text in reasons if reason is None or reason not in text] == []
+    assert len(reasons) == (reason is not None)
+
+
 def test_a_variable_that_only_other_programs_still_read_is_ignored_by_the_launch_file(repository, compare):
     reading = 'Node(package="arm", executable="arm", name=os.environ["ARM_NAME"])'
     program = "import os\nprint(os.environ['ARM_NAME'])\n"

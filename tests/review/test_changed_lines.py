@@ -63,6 +63,18 @@ ExecStart=/bin/bash -c 'source setup.bash && rosrun arm driver __ns:=left'
             f"`rosrun arm pose {LONG_OPTIONS} image:=front/image`",
         ),
         ("arm/notes", "ros2 run arm driver\n", None),
+        (
+            "Dockerfile",
+            "FROM ros:jazzy\nRUN apt-get update\nCMD ros2 run a b\n",
+            "`FROM ros:jazzy`, `CMD ros2 run a b`",
+        ),
+        (
+            "docker/compose.yaml",
+            "services:\n  sim:\n    image: arm\n    command: bash\n    tty: true\n  arm:\n    image: arm\n",
+            "`image: arm`, `command: bash`",
+        ),
+        ("docker/compose.yml", "volumes:\n  data:\n", None),
+        ("udev/9.rules", '# sonar\nKERNEL=="ttyUSB*", MODE="0666"\n', '`KERNEL=="ttyUSB*", MODE="0666"`'),
     ],
 )
 def test_added_and_removed_scripts_and_units_show_their_commands(repository, compare, path, text, state):

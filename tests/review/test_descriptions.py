@@ -271,6 +271,17 @@ def test_plugin_interfaces_and_topics_are_compared(package, compare, old, new, r
     assert (None if change.reason is None else str(change.reason)) == reason
 
 
+def test_the_reason_of_an_unreadable_version_is_no_warning_about_an_argument(package, compare):
+    call = "$(command 'xacro $(find-pkg-share arm_description)/urdf/arm.urdf.xacro speed:=1')"
+    launch = f'<launch><let name="d" value="{call}"/></launch>'
+    joint = '<joint name="j" type="fixed"><parent link="lower"/><child link="{}"/></joint><link name="hand"/></robot>'
+    old, new = (ARM.replace("</robot>", joint.format(name)) for name in ("palm", "hand"))
+    package.commit({PATH: old, "arm_description/launch/arm.launch.xml": launch})
+    package.write({PATH: new})
+    texts = [text for text in sentences(subject(compare(package), PATH)) if text.startswith("can be read now")]
+    assert ["'palm'" in text for text in texts] == [True]
+
+
 def test_unreadable_version_is_a_change_of_its_file_only(package, compare):
     package.commit(
         {

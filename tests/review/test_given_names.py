@@ -88,6 +88,26 @@ def test_switched_off_topic_of_move_group_is_breaking(repository, compare, old, 
     assert bool(breaking(result)) is is_breaking
 
 
+@pytest.mark.parametrize(
+    ("value", "more", "is_breaking"),
+    [
+        ("true", "", True),
+        ("false", "", False),
+        ("true", '<param name="publish_planning_scene" value="true"/>', False),
+        ("true", '<rosparam command="load" file="$(find arm)/config/arm.yaml"/>', False),
+    ],
+)
+def test_removed_switch_of_a_topic_of_move_group(repository, compare, value, more, is_breaking):
+    path = "arm/launch/arm.launch"
+    launch = LAUNCH.format(value)
+    switch = '<param name="planning_scene_monitor/publish_planning_scene" value="$(arg publish)"/>'
+    assert switch in launch
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), path: launch})
+    repository.write({path: launch.replace(switch, more)})
+    reasons = [None if each.reason is None else str(each.reason) for each in subject(compare(repository), path).changes]
+    assert (SWITCH in reasons) is is_breaking
+
+
 TF_LAUNCH = """<launch>
   <node pkg="base" type="base" name="base"><param name="publish_tf" value="{}"/></node>
   {}

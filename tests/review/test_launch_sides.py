@@ -60,6 +60,7 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
         ("joint_state_publisher_gui/joint_state_publisher_gui", "follow_joint_trajectory", None),
         ("joint_state_publisher_gui/joint_state_publisher_gui", "joint_states", CERTAIN),
         ("joint_state_publisher/joint_state_publisher", "~other", POSSIBLE),
+        ("controller_manager/ros2_control_node", "~/robot_description", None),
         ("robot_state_publisher/robot_state_publisher", "robot_description", POSSIBLE),
         ("move_base/move_base", "base_scan", None),
         ("move_base/move_base", "NavfnROS/plan", POSSIBLE),

@@ -66,6 +66,26 @@ def test_publisher_of_joint_states_with_a_window_is_no_missing_node(repository, 
     assert breaking(compare(repository)) == expected
 
 
+@pytest.mark.parametrize(
+    ("attributes", "spawner", "is_breaking"),
+    [
+        ("", 'args="joint_state_broadcaster"', False),
+        ("", 'args="arm_controller -c /controller_manager joint_state_broadcaster"', False),
+        ("", 'args="arm_controller"', True),
+        ("", 'args="joint_state_broadcaster" if="false"', True),
+        ("", 'args="joint_state_broadcaster" namespace="left"', True),
+        ('><remap from="joint_states" to="sliders"/></node', 'args="joint_state_broadcaster"', True),
+    ],
+)
+def test_a_broadcaster_replaces_a_publisher_of_joint_states(review_changes, attributes, spawner, is_breaking):
+    node = f'<node pkg="joint_state_publisher_gui" exec="joint_state_publisher_gui"{attributes or "/"}>'
+    text = f"<launch>\n  {node}\n</launch>\n"
+    new_node = f'<node pkg="controller_manager" exec="spawner" {spawner}/>'
+    changes, breaking_changes = review_changes("arm.launch.xml", text, node, new_node)
+    assert len(breaking_changes) == is_breaking
+    assert any("publishes the joint states" in str(change) for change in changes) is not is_breaking
+
+
 @pytest.mark.parametrize(("program", "count"), [("joint_state_publisher_gui", 1), ("rviz2", 0)])
 def test_new_namespace_of_a_publisher_with_a_window_is_breaking(review_changes, program, count):
     text = f'<launch>\n  <node pkg="{program}" exec="{program}" namespace="left"/>\n</launch>\n'

@@ -278,3 +278,23 @@ def start(context):
     assert found == [
         "node 'arm/driver': parameter prefix $(eval '$(var prefix)'.strip('/')) -> $(eval '$(var prefix)'.rstrip('/'))"
     ]
+
+
+@pytest.mark.parametrize(
+    ("imported", "reasons"),
+    [("('left', 'right')", []), ("('left',)", ["callers that pass 'right' fail"]), ("find_sides()", [])],
+)
+def test_choices_that_another_module_lists(repository, compare, imported, reasons):
+    text = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument('side', default_value='left', choices=['left', 'right'])])
+"""
+    path, module = "arm/launch/arm.launch.py", "arm/arm/sides.py"
+    repository.commit({path: text, "arm/arm/__init__.py": ""})
+    new = "from arm.sides import SIDES\n" + text.replace("['left', 'right']", "list(SIDES)")
+    repository.write({path: new, module: f"SIDES = {imported}\n"})
+    changes = subject(compare(repository), path).changes
+    assert [str(change.reason) for change in changes if change.reason is not None] == reasons

@@ -184,3 +184,13 @@ def test_a_static_transform_that_a_configuration_of_rviz_still_names(repository,
     repository.write({path: launch.format("")})
     lines = [str(change.sentence) for subject, change in compare(repository).breaking_changes if "rviz" in subject.path]
     assert lines == [f"names the frame 'camera_link', which '{path}' no longer has"]
+
+
+def test_a_frame_that_two_robots_lose_has_one_line_for_each_user(repository, compare):
+    robots = ("arm/arm.urdf", "arm/mobile.urdf")
+    rviz = {"arm/a.rviz": "Visualization Manager:\n  Global Options:\n    Fixed Frame: camera\n"}
+    old = dict.fromkeys(robots, ROBOT.format(link="camera", joint="shoulder"))
+    repository.commit({"arm/package.xml": MANIFEST.format("arm"), **old, **rviz})
+    repository.write(dict.fromkeys(robots, ROBOT.format(link="lens", joint="shoulder")))
+    texts = [str(change.sentence) for _, change in compare(repository).breaking_changes]
+    assert texts.count(FRAME) == len([text for text in texts if text.startswith("names the")]) == 1

@@ -89,12 +89,19 @@ def test_the_program_of_a_component_is_renamed(repository, compare):
     ]
 
 
-def test_a_topic_that_moves_into_the_namespace_of_its_node_is_lost_only_in_a_namespace(repository, compare):
+@pytest.mark.parametrize(
+    ("type_name", "reason"),
+    [
+        ("Bool", "if the node has a namespace, programs that use the name '/done' do not find it"),
+        ("Int8", "programs that use '/done' with the old type get nothing"),
+    ],
+)
+def test_a_topic_that_moves_into_the_namespace_of_its_node(repository, compare, type_name, reason):
     text = 'void f() { p_ = node->create_publisher<Bool>("/done", 1); }\n'
     repository.commit({**MANIFEST, "arm/src/n.cpp": text})
-    repository.write({"arm/src/n.cpp": text.replace("/done", "done")})
+    repository.write({"arm/src/n.cpp": text.replace("/done", "done").replace("Bool", type_name)})
     ((_, change),) = compare(repository).breaking_changes
-    assert str(change.reason) == "if the node has a namespace, programs that use the name '/done' do not find it"
+    assert str(change.reason) == reason
 
 
 def test_a_member_whose_type_has_another_meaning_shows_both_types(repository, compare):

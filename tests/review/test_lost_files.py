@@ -192,3 +192,17 @@ def test_a_description_of_another_package_that_is_not_installed_is_told(reposito
     repository.write({path: text.format("pairs/two.xacro")})
     told = "names 'pairs/two.xacro' of 'arm', which is not installed"
     assert (told in breaking(compare(repository))) == (folders == "robots")
+
+
+@pytest.mark.parametrize(("left", "is_told"), [({}, False), ({"a/meshes/hand.obj": "mtllib arm.mtl\n"}, True)])
+def test_materials_that_move_with_their_meshes_are_not_lost(repository, compare, left, is_told):
+    cmake = CMAKE + "install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\n"
+    mesh = "mtllib arm.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    material = "newmtl red\nKd 0.8 0.1 0.1\n"
+    repository.commit(
+        {**FILES, "a/CMakeLists.txt": cmake, "a/meshes/arm.obj": mesh, "a/meshes/arm.mtl": material, **left}
+    )
+    moved = {"a/meshes/visual/arm.obj": mesh, "a/meshes/visual/arm.mtl": material}
+    repository.write({"a/meshes/arm.obj": None, "a/meshes/arm.mtl": None, **moved})
+    told = "no longer installed: 'share/arm/meshes/arm.mtl'" in breaking(compare(repository))
+    assert told is is_told

@@ -66,3 +66,10 @@ def test_parameters_of_the_same_names_in_two_nodes_are_not_moved(review_changes)
 def test_file_with_other_values_is_not_moved(review_changes):
     found, _ = review_changes("rate: 10\na: 1\nb: 2\n", "lidar:\n  ros__parameters: {rate: 10, model: diff}\n")
     assert not any(" moved to " in sentence for sentence in sentences(found)), sentences(found)
+
+
+def test_parameters_beside_the_key_of_ros_2_have_not_moved(review_changes):
+    old = "arm: {type: a, joints: [x, y], rate: 10}\nhand:\n  type: b\n  rate: 20\n"
+    found, found_breaking = review_changes(old, old + "  ros__parameters: {speed: 2, force: 3}\n")
+    assert sentences(found) == ["hand.ros__parameters added: speed 2, force 3"]
+    assert found_breaking == []

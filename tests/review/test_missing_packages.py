@@ -123,6 +123,21 @@ def test_part_that_moves_into_missing_package_is_not_called_removed(package, com
     assert not any("lidar_base" in text or " to " in text for text in found if "unless" in text)
 
 
+def test_parts_of_a_file_that_the_new_version_does_not_find_have_no_lines(package, compare):
+    include = '<xacro:include filename="$(find arm_description)/urdf/lidar.xacro"/>'
+    lidar = '<joint name="lidar_joint" type="fixed"><parent link="lower"/><child link="lidar"/></joint>'
+    lidar = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="lidar"/>{lidar}</robot>'
+    text = ARM.replace("</robot>", include + "</robot>")
+    package.commit({PATH: text, "arm_description/urdf/lidar.xacro": lidar})
+    package.write(
+        {PATH: text.replace(include, include.replace("$(find arm_description)", "package://arm_description"))}
+    )
+    result = compare(package)
+    path = "arm_description/urdf/package://arm_description/urdf/lidar.xacro"
+    assert breaking(result) == [f"no such file: '{path}'"]
+    assert [text for text in sentences(subject(result, PATH)) if "removed" in text] == []
+
+
 def test_plugin_that_a_call_of_a_missing_macro_may_replace_is_told(sensor_package, compare):
     plugin = '<plugin name="imu" filename="libgazebo_ros_imu.so"><topicName>imu</topicName></plugin>'
     text = WITH_SENSOR.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")

@@ -71,6 +71,16 @@ class Inclusion:
         relative = Path(os.path.normpath(includer.parent / self.path))
         return file == relative or not relative.is_file()
 
+    def find_files(self, includer: Path, packages: Mapping[str, Sequence[Path]]) -> list[Path]:
+        """Return the existing files to which this include refers; none if its path is computed.
+
+        Args:
+            includer: the absolute path of the file with the include.
+            packages: the absolute folders of the known packages, by name.
+        """
+        folders = packages.get(self.package, ()) if self.package else (includer.parent,)
+        return [folder / self.path for folder in folders if "$" not in self.path and (folder / self.path).is_file()]
+
     def may_compute(self, file: Path) -> bool:
         """Return whether the path is computed, and some values of its expressions lead to a file."""
         return bool(self.pattern) and re.search(f"(?:^|/){self.pattern}$", str(file)) is not None

@@ -26,11 +26,16 @@ _SETTINGS_OF_TOOLS = re.compile(r"\..*|(tox|pytest|mypy|ruff|pylint|flake8|setup
 _SETTINGS_COMMENT = re.compile(r"[#;]|//|--")
 _CMAKE_END = re.compile(r"end(?:if|macro|function|foreach|while) ?\(.*\)", re.IGNORECASE)
 """The end of a block of CMake, which means something only with its beginning."""
-_SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
+_RULES_SUFFIX = ".rules"
+_SUFFIXES = _SHELL_SUFFIXES | {_RULES_SUFFIX, UNIT_SUFFIX, ".dockerfile"}
+_CONTAINER_FILE = re.compile(r"(.*\.)?(docker|container)file(\..*)?|(.*[.-])?compose([.-].*)?\.ya?ml")
+_CONTAINER_LINE = re.compile(
+    r"(?:FROM|EXPOSE|ENTRYPOINT|CMD)\b.*|(?:image|build|command|entrypoint|network_mode|privileged):.+"
+)
+"""The lines of container files with what is started, from which image, and with which rights."""
 _FILE_NAME = re.compile(
-    r"(.*\.)?(docker|container)file(\..*)?|(.*[.-])?compose([.-].*)?\.ya?ml|\w*(packages?|apt|requirements?|dependencies)\w*\.txt"
-    r"|\.env|cmakelists\.txt|.*\.cmake"
+    rf"{_CONTAINER_FILE.pattern}|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env|cmakelists\.txt|.*\.cmake"
 )
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
@@ -145,12 +150,17 @@ def _find_start(old: str, new: str) -> str:
 
 
 def list_commands(version: Version, path: str) -> Phrase | None:
-    """Return the first commands of an added or removed shell script or unit of systemd, or None for other files."""
-    is_unit = path.endswith(UNIT_SUFFIX)
-    if not is_unit and not is_shell_script(version, path):
+    """Return the first commands of an added or removed script, unit, container file or device rule, or None."""
+    is_script = is_shell_script(version, path)
+    is_container_file = _CONTAINER_FILE.fullmatch(PurePosixPath(path).name.lower()) is not None
+    if not is_script and not is_container_file and not path.endswith((UNIT_SUFFIX, _RULES_SUFFIX)):
         return None
-    lines = list_started_programs(version, path) if is_unit else [*split_content_lines(version.text(path))]
-    if len(lines) > _MAX_LINES and not is_unit:
+    lines = [*split_content_lines(version.text(path))]
+    if is_container_file:
+        lines = list(dict.fromkeys(line for line in lines if _CONTAINER_LINE.match(line)))
+    elif path.endswith(UNIT_SUFFIX):
+        lines = list_started_programs(version, path)
+    if len(lines) > _MAX_LINES and is_script:
         return _format_commands(lines, _MAX_LINES, _MAX_COMMAND_LENGTH)
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
 

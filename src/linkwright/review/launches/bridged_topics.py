@@ -10,6 +10,7 @@ from linkwright.review.breaking import names_reason
 from linkwright.review.files.parameters.bridges import TRANSFORM_TOPICS, explain_lost_topic
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
+from linkwright.review.texts.list_changes import list_items
 
 _BRIDGE = re.compile(r"ros_(gz|ign)_bridge/parameter_bridge")
 _BRIDGED_TOPIC = re.compile(r"(?P<topic>[\w/]+)@[\w/.]+[\[@]")
@@ -60,6 +61,20 @@ def explain_lost_topics(entry: Entry, old: LaunchOutline, new: LaunchOutline) ->
     if lost and not names:
         return True, explain_lost_topic(f"/{lost[0]}")
     return True, names_reason(names) if names else None
+
+
+def explain_lost_arguments(entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> Phrase | None:
+    """Return the reason why other arguments of a bridge are breaking; None if it has all topics or they are unknown.
+
+    Args:
+        entry: the old action.
+        new_entry: the new action.
+        old: the actions of the old file.
+        new: the actions of the new file.
+    """
+    arguments = new.resolve(new_entry.settings.get("arguments", ""))
+    is_known = all("@" in argument for argument in list_items(arguments))
+    return explain_lost_topics(entry, old, new)[1] if is_known else None
 
 
 def _has_configuration(entry: Entry) -> bool:

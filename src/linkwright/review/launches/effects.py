@@ -458,7 +458,7 @@ def _find_argument_reason(
         return _explain_required_argument(entry)
     if setting == "default" and old is not None and new is not None:
         return _find_default_reason(entry, old, new, old_outline, new_outline)
-    if setting == "choices" and old is not None and new is not None:
+    if setting == "choices" and old is not None and new is not None and old[:1] == new[:1] == "[":
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
             return _make_caller_reason(", ".join(removed))

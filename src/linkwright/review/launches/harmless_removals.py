@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.argument_uses import uses_argument
+from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import IncludedActions, find_equal_action
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.outlines import CONDITION, NAMESPACE, REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
 from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import format_title
 from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
 from linkwright.review.sources.names import PYTHON_SUFFIX
+
+_JOINT_STATE_PUBLISHER = re.compile(r"(joint_state_publisher(_gui)?)/\1")
+_SPAWNER = re.compile(r"controller_manager/spawner(\.py)?")
+_BROADCASTER = re.compile(r"(?:^|[\s,\[])joint_state_(?:broadcaster|controller)(?=[\s,\]]|$)")
+"""The name of the broadcaster in the arguments of a spawner."""
 
 
 def explain_harmless_removal(
@@ -43,6 +50,9 @@ def explain_harmless_removal(
         return phrase("{change}; the robot has the frame as a link", change=text)
     if is_simulated_controller_manager(entry, new_included, pair.versions.new):
         return phrase("{change}; the simulated robot has a controller manager", change=text)
+    broadcaster = _find_joint_state_broadcaster(entry, new)
+    if broadcaster is not None:
+        return phrase("{change}; {entry} publishes the joint states", change=text, entry=format_title(broadcaster))
     if _is_unused_argument(pair, entry, old):
         return phrase("{change}; the file did not use it", change=text)
     declaration = new_included.find_declaration(entry.name) if entry.kind == "argument" else None
@@ -57,6 +67,22 @@ def explain_harmless_removal(
     if starting_node is not None:
         new_title = format_title(starting_node)
         return phrase("{old} replaced by {new}, whose script names the file", old=title, new=new_title)
+    return None
+
+
+def _find_joint_state_broadcaster(entry: Entry, new: LaunchOutline) -> Entry | None:
+    """Return the spawner of a broadcaster that publishes what a removed ``joint_state_publisher`` did, or None.
+
+    It starts by default, in the same namespace. A remapped publisher has no replacement.
+    """
+    is_remapped = any(setting.startswith(REMAPPING) for setting in entry.settings)
+    if not _JOINT_STATE_PUBLISHER.fullmatch(entry.name) or is_remapped:
+        return None
+    for other in new.entries:
+        is_started = _SPAWNER.fullmatch(other.name) and _BROADCASTER.search(other.settings.get("arguments", ""))
+        is_in_place = is_started and other.settings.get(NAMESPACE) == entry.settings.get(NAMESPACE)
+        if is_in_place and evaluate_condition(new.resolve(other.settings.get(CONDITION, ""))) is not False:
+            return other
     return None
 
 

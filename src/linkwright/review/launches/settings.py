@@ -10,8 +10,9 @@ from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted_
 from linkwright.review.breaking import name_reason, names_reason, possible_name_reason, possible_names_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.parameters.names import offers_frame
+from linkwright.review.files.parameters.names import find_lost_output_reason, offers_frame
 from linkwright.review.launches.arguments.fixed import fix_value
+from linkwright.review.launches.bridged_topics import explain_lost_arguments
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import (
@@ -217,6 +218,10 @@ class SettingChanges:
             has_different_default = pair.has_defaults and defaults[0] != defaults[1]
             reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
             reason = reason or (self._lost_files.find_reason(new, pairs) if pair.name == "parameters" else None)
+            if reason is None and pair.name == "arguments":
+                reason = explain_lost_arguments(old, new, self._old, self._new)
+            if reason is None and pair.new is None and old.settings.get("parameters") == new.settings.get("parameters"):
+                reason = find_lost_output_reason(pair.name, self._old.resolve(pair.old_default or ""), new.settings)
             reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
             reason = reason or explain_enabled_namespace(pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:

@@ -92,8 +92,21 @@ def _find_hidden_differences(
     A robot that reads the file in one version only shows the whole file as added or removed.
     """
     is_in_one_version = pair.is_read(is_old=True) != pair.is_read(is_old=False)
-    for difference in comparison.differences(old, new):
+    for difference in _drop_followed_links(list(comparison.differences(old, new))):
         if is_in_one_version or not _is_shown(pair, difference, old, new):
+            yield difference
+
+
+def _drop_followed_links(differences: Sequence[PartDifference]) -> Iterator[PartDifference]:
+    """Yield the differences except in joints whose parents and children only follow renamed links."""
+    renamed = {
+        (difference.old, difference.new)
+        for difference in differences
+        if difference.value == "name" and difference.new_element is not None and difference.new_element.tag == "link"
+    }
+    for difference in differences:
+        is_link = difference.path[-1] in ("parent", "child") and difference.value == "link"
+        if not is_link or (difference.old, difference.new) not in renamed:
             yield difference
 
 

@@ -10,15 +10,15 @@ from pathlib import Path
 from linkwright.descriptions import Description
 from linkwright.descriptions.argument_sets import ArgumentSet
 from linkwright.descriptions.pairs import Model, Pair
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import LinkwrightError, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
-from linkwright.review.texts.folders import without_folder
 from linkwright.review.parts.outline import PROPERTY, try_read_outline
 from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
 from linkwright.review.robots.unpaired_robots import format_robot
+from linkwright.review.texts.folders import without_folder
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
@@ -411,7 +411,8 @@ def find_fault(result: Description | LinkwrightError, version: Version) -> Fault
     """Return the fault that makes a version unreadable, or None if it can be read."""
     if isinstance(result, Description):
         return None
-    first = result.diagnostics[0]
+    errors = (item for item in result.diagnostics if item.severity is Severity.ERROR)
+    first = next(errors, result.diagnostics[0])  # warnings about arguments may precede it
     reason = without_folder(first.message, version.root)
     if first.span is None:
         return Fault(reason)

@@ -202,9 +202,12 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             continue
         if partial is not None and not partial.is_certain(difference):
             if partial.may_be_defined_elsewhere(difference):
+                location = _find_difference_location(pair, difference)
+                if location is not None and partial.lacks_file(location.file):
+                    continue  # the line about the missing file tells it
                 removal = format_difference(difference)
                 text = phrase("{change}, unless a missing package defines it", change=removal)
-                yield Change(text, location=_find_difference_location(pair, difference))
+                yield Change(text, location=location)
             elif partial.has_unevaluated_side(difference):
                 unevaluated[find_title(difference)[1]] = None
             continue

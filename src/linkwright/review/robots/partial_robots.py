@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.comparison import Difference
@@ -82,6 +83,11 @@ class PartialPair:
         """Return whether a removed part may be among those that only the new version omits."""
         is_removed = difference.kind == "removed" and not self._is_of_stand_in(difference)
         return is_removed and _has_more_omissions(self.new, self.old)
+
+    def lacks_file(self, path: str) -> bool:
+        """Return whether only the new version does not find a file, by its name."""
+        files = self.new.omissions.files - self.old.omissions.files
+        return PurePosixPath(path).name in {PurePosixPath(file).name for file in files}
 
     def has_unevaluated_side(self, difference: Difference) -> bool:
         """Return whether only one version of an argument of a call needs a name that a missing file defines."""

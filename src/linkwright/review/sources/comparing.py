@@ -27,6 +27,7 @@ from linkwright.review.sources.details import (
     format_name,
     format_names,
     format_rename,
+    make_scope_reason,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given, take_given
 from linkwright.review.sources.hardware_interfaces import find_description_without
@@ -395,7 +396,7 @@ class _SourcePair(PairedNames):
             return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
         if old_item.name.strip("/") == new_item.name.strip("/"):
-            return None if reason is None else _make_scope_reason(old_item.name)  # absolute before, or absolute now
+            return None if reason is None else make_scope_reason(old_item, new_item)  # absolute before, or absolute now
         path = self.file.path
         if old_item.kind in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             if is_served(new_item, self.new, path):
@@ -593,8 +594,3 @@ class _SourcePair(PairedNames):
         shown = patterns if has_sum else (old_default.name, new_default.name)
         text = format_rename(replace(old, name=shown[0]), replace(new, name=shown[1]))
         yield self.make_change(text, new.span, self.new, reason)
-
-
-def _make_scope_reason(name: str) -> Phrase:
-    """Return the reason why a name that becomes absolute or relative is breaking."""
-    return phrase("if the node has a namespace, programs that use the name '{name}' do not find it", name=name)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted
 from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.sources.cpp.calls import GRAPH_KINDS
 from linkwright.review.sources.cpp.types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp.variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
@@ -227,6 +228,13 @@ def _compare_types(
             yield text, None
         else:
             yield text, phrase("code that uses it as '{type}' does not build", type=old.type)
+
+
+def make_scope_reason(old: SourceName, new: SourceName) -> Phrase:
+    """Return the reason why a name that becomes absolute or relative is breaking, maybe with another type."""
+    if old.type and new.type and old.type != new.type and new.kind in GRAPH_KINDS:
+        return _make_type_reason(replace(new, name=old.name), is_computed=False)
+    return phrase("if the node has a namespace, programs that use the name '{name}' do not find it", name=old.name)
 
 
 def _make_type_reason(item: SourceName, *, is_computed: bool) -> Phrase:

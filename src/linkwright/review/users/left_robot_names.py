@@ -93,7 +93,7 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
     """Yield the files that still name a lost frame or joint, each with a change.
 
     A name that another file of the new version may still define is left out, and so are files of packages that do not
-    mention the package with the loss.
+    mention the package with the loss. A file that names what several files have lost has one change.
 
     Args:
         versions: both versions of the repository.
@@ -102,13 +102,14 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
     lost = list(dict.fromkeys(list_lost_names(subjects)))
     files = RobotFiles(versions.new)
     lost = [item for item in lost if not files.may_define(item)] if lost else []
+    found = {(item.name, item.is_frame, item.path) for item in lost}
     for item in lost:
-        found = {item.path}
         for path, change in files.find_users(item):
             if _gives_frame(versions, path, change, item):
                 continue
-            if path not in found and files.are_related(path, item.path):
-                found.add(path)
+            user = (item.name, item.is_frame, path)
+            if user not in found and files.are_related(path, item.path):
+                found.add(user)
                 yield path, change
 
 

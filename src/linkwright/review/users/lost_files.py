@@ -36,7 +36,9 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         if file.old_path is None or file.old_path == file.new_path or file.is_submodule:
             continue
         package = versions.old.package_of(file.old_path)
-        if package is not None and package not in moved_packages and _reports_nothing(versions.old, file.old_path):
+        if package is None or package in moved_packages or _is_material_of_lost_meshes(versions.new, file.old_path):
+            continue
+        if _reports_nothing(versions.old, file.old_path):
             packages.setdefault(package, []).append(file)
     for package, files in packages.items():
         path = find_build_file(versions.new, package)
@@ -49,6 +51,11 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             if find_build_file(versions.old, package) in removed:
                 changes += _find_lost_facts(old, new)
             yield from ((path, change) for change in changes)
+
+
+def _is_material_of_lost_meshes(version: Version, path: str) -> bool:
+    """Return whether a file has materials of OBJ meshes, all of which left its folder and have lines of their own."""
+    return path.endswith(".mtl") and not any(version.file(path).parent.glob("*.obj"))
 
 
 def _reports_nothing(version: Version, path: str) -> bool:

@@ -61,9 +61,16 @@ def find_migrated_nodes(old: Mapping[str, YamlValue], new: Mapping[str, YamlValu
         if len(owners) == 1:
             path = f"{owners[0]}.{_KEY}"
             parts.setdefault(path, {})[key] = path if named else f"{path}.{key}"
-    migrated = [MigratedNode(path, names) for path, names in parts.items()]
+    candidates = [MigratedNode(path, names) for path, names in parts.items()]
+    migrated = [node for node in candidates if _has_moved(node, old, new)]
     kept = sum(rename_migrated(name, migrated) in new for name in old)
     return migrated if kept >= _MIN_SHARE * len(old) else []
+
+
+def _has_moved(node: MigratedNode, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> bool:
+    """Return whether the new file has enough of the parameters of a node at their new paths."""
+    moved = [renamed for name in old if (renamed := rename_migrated(name, [node])) != name]
+    return sum(name in new for name in moved) >= _MIN_SHARE * len(moved)
 
 
 def _get_base_name(node: str) -> str:

@@ -327,6 +327,21 @@ def find_switch_reason(parameter: str, old: str, new: str) -> Phrase | None:
     return phrase("the data that '{name}' enables is no longer published", name=name) if name else None
 
 
+def find_lost_output_reason(parameter: str, old: str, others: Iterable[str]) -> Phrase | None:
+    """Return the reason why it is breaking that a node no longer gets a parameter which enabled a topic, or None.
+
+    These parameters are false by default.
+
+    Args:
+        parameter: the lost parameter.
+        old: its value.
+        others: the parameters that the node gets, maybe this one in another section.
+    """
+    match = _OUTPUT_SWITCH.search(parameter)
+    is_kept = match is None or any(other.endswith(match[0].lstrip("./_ ")) for other in others)
+    return None if is_kept else find_switch_reason(parameter, old, "false")
+
+
 def switches_transform(parameter: str) -> bool:
     """Return whether a parameter enables and disables a transform of its node."""
     return _TRANSFORM_SWITCH.search(parameter) is not None

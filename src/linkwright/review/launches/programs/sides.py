@@ -25,6 +25,7 @@ _INPUT_TOPIC = re.compile(
 )
 """The topics to which these programs subscribe. They publish their other topics."""
 _INPUTS = {
+    "controller_manager/ros2_control_node": {"robot_description"},
     "move_base/move_base": {"map", "goal", "move_base_simple/goal"},
     "amcl/amcl": {"map", "initialpose"},
     "map_server/map_saver": {"map"},

@@ -18,6 +18,7 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.launches.python.expression_texts import BoundExpression, ExpressionTexts
 from linkwright.review.launches.python.helpers import HelperFunctions, find_parameter_defaults
+from linkwright.review.launches.python.imported_values import inline_values
 from linkwright.review.launches.python.keyword_dictionaries import find_keyword_values
 from linkwright.review.launches.python.list_additions import AddedItem, find_added_items, find_later_items
 from linkwright.review.launches.python.node_settings import (
@@ -44,6 +45,8 @@ _INCLUDING_FUNCTIONS = ("include_launch_py_description", "include_scoped_launch_
 """The functions of launch_pal that include a launch file by its package and the parts of its path."""
 ACTIONS = frozenset({*_INCLUDING_FUNCTIONS, *NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
+_COPIES = ("list", "tuple", "sorted")
+"""The functions that return the items of another list."""
 _EMPTY_SCOPE = Scope()
 
 
@@ -90,6 +93,8 @@ class ActionReader:
                 for key, value in keywords.items()
                 if key in names and not (key == "default_value" and self._is_none(value))
             }
+            if "choices" in settings:
+                settings["choices"] = self._format_choices(keywords["choices"])
             if "default" in settings:
                 settings["default"] = find_own_default(name, self.texts.format_joined(keywords["default_value"]))
         elif function == "SetLaunchConfiguration":
@@ -137,6 +142,14 @@ class ActionReader:
         resolved = None if parts is None else self.python.resolved(parts)
         items = resolved.elts if isinstance(resolved, (ast.List, ast.Tuple)) else [resolved]
         return "/".join([f"$(find-pkg-share {self.texts.text(package)})", *map(self.texts.text, items)])
+
+    def _format_choices(self, node: ast.expr) -> str:
+        """Return the values that an argument accepts, also those of ``list(MODELS)`` with imported names."""
+        values = inline_values(node, self.python, self.helpers, {})
+        if isinstance(values, ast.Call) and called_name(values) in _COPIES and len(values.args) == 1:
+            values = values.args[0]
+        items = self.texts.find_items(values)
+        return self.texts.text(node) if items is None else f"[{', '.join(it.texts.text(it.node) for it in items)}]"
 
     def _is_none(self, node: ast.expr) -> bool:
         """Return whether an expression is None, also by the default of a parameter of a function around it."""
