@@ -354,11 +354,18 @@ def test_code_outside_of_functions_changes_beside_a_function(review_lines):
     ]
 
 
-def test_many_changed_statements_outside_of_functions_are_not_shown(review_lines):
+def test_of_many_changed_statements_outside_of_functions_three_are_shown(review_lines):
     old = "\n".join(f"state_{letter} = compute(a)" for letter in "abcd")
+    changes = [f"`state_{letter} = compute(a)` -> `state_{letter} = measure(a, b)`" for letter in "abc"]
     assert review_lines("arm/src/a.py", old, old.replace("compute(a)", "measure(a, b)")) == [
-        "code changed outside of functions"
+        f"outside of functions: {'; '.join(changes)}; and 1 more"
     ]
+
+
+def test_changed_statements_outside_of_functions_that_tell_nothing_are_not_shown(review_lines):
+    old = "\n".join(f"call_{letter}()" for letter in "abcd")
+    lines = review_lines("arm/src/a.py", f"{old}\n", "")
+    assert lines == ["code changed outside of functions"]
 
 
 def test_a_moved_statement_outside_of_functions_is_not_shown(review_lines):

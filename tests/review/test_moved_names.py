@@ -95,3 +95,32 @@ def test_parameters_that_move_to_a_new_node_are_breaking(repository, compare, no
         )
     }
     assert found == (expected if is_breaking else {})
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        (LEFT, LEFT, "publishers added: 'left' (Float32)"),
+        (LEFT, "", None),
+        ("", LEFT, "publishers added: 'left' (Float32)"),
+    ],
+)
+def test_a_changed_node_of_another_package_may_keep_its_name(repository, compare, old, new, line):
+    other = {"base/package.xml": PACKAGE_XML.replace("arm_description", "base")}
+    old_files = {"arm/src/drive.py": make("drive", "x = 1"), "base/src/wheels.py": make("wheels", f"{old}\nx = 1")}
+    repository.commit({**MANIFEST, **other, **old_files})
+    repository.write({"arm/src/drive.py": make("drive", LEFT), "base/src/wheels.py": make("wheels", f"{new}\nx = 2")})
+    result = compare(repository)
+    lines = [text for item in result.subjects if item.path == "arm/src/drive.py" for text in sentences(item)]
+    assert [text for text in lines if "publishers" in text] == ([line] if line else [])
+
+
+def test_a_changed_node_of_another_package_does_not_hide_a_lost_name(repository, compare):
+    other = {"base/package.xml": PACKAGE_XML.replace("arm_description", "base")}
+    nodes = {"arm/src/drive.py": make("drive", LEFT), "base/src/wheels.py": make("wheels", LEFT)}
+    repository.commit({**MANIFEST, **other, **nodes})
+    repository.write(
+        {"arm/src/drive.py": make("drive", "x = 1"), "base/src/wheels.py": make("wheels", f"{LEFT}\nx = 2")}
+    )
+    lines = [text for item in compare(repository).subjects for text in sentences(item)]
+    assert "publishers that published nothing removed: 'left' (Float32)" in lines

@@ -152,6 +152,35 @@ def test_bridges_are_compared_by_topic(review_changes, old, new, expected, is_br
     assert bool(found_breaking) is is_breaking
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "first", "others", "is_breaking"),
+    [
+        ("ros_topic_name: /", "ros_topic_name: ", "bridge '/left' renamed to 'left'", ("/right -> right",), False),
+        ("ros_topic_name: /", "ros_topic_name: /arm/", "bridge '/left' renamed to '/arm/left'",
+         ("/right -> /arm/right",), True),
+        ("/yard/", "/hall/", "bridge '/left': gz_topic_name /yard/left -> /hall/left", ("/right",), False),
+    ],
+)  # fmt: skip
+def test_topics_of_bridges_that_are_edited_alike_are_one_line(
+    repository, compare, old, new, first, others, is_breaking
+):
+    bridge = "- ros_topic_name: /{0}\n  gz_topic_name: /yard/{0}\n  ros_type_name: std_msgs/msg/Bool\n"
+    text = bridge.format("left") + bridge.format("right")
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: text})
+    repository.write({PATH: text.replace(old, new)})
+    (change,) = compare(repository).subjects[0].changes
+    assert (str(change.sentence), change.other_names) == (first, others)
+    assert (change.reason is not None) is is_breaking
+
+
+def test_topics_of_bridges_that_are_edited_otherwise_have_a_line_each(repository, compare):
+    text = "- ros_topic_name: /left\n  gz_topic_name: /a\n- ros_topic_name: /right\n  gz_topic_name: /b\n"
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: text})
+    repository.write({PATH: text.replace("/a", "/c").replace("/b", "/d")})
+    found = [str(change.sentence) for change in compare(repository).subjects[0].changes]
+    assert found == ["bridge '/left': gz_topic_name /a -> /c", "bridge '/right': gz_topic_name /b -> /d"]
+
+
 SETTINGS = "a: null\nb: ~\nc:\nd: ''\ne: 1\nf: [null, 1]\n"
 
 

@@ -105,3 +105,24 @@ def test_added_macro_of_a_file_of_both_versions_has_its_parameters_and_contents(
     repository.write({part: text.format(macro)})
     lines = sentences(subject(compare(repository), part))
     assert lines == ["macro 'lamps' added: parameters real:=false; makes link lamp"]
+
+
+def test_part_of_hardware_that_the_other_value_lacks_does_not_name_the_argument(repository, compare):
+    control = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="sim" default="true"/>
+  <link name="base"/><link name="head"/>
+  <joint name="neck" type="continuous"><parent link="base"/><child link="head"/></joint>
+  <xacro:if value="$(arg sim)">
+    <ros2_control name="Simulated" type="system">
+      <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+      <joint name="neck"><command_interface name="position"/><state_interface name="position"/>{velocity}</joint>
+    </ros2_control>
+  </xacro:if>
+</robot>
+"""
+    old = control.format(velocity='<state_interface name="velocity"/>')
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, PATH: old})
+    repository.write({PATH: control.format(velocity="")})
+    (line,) = [line for line in sentences(subject(compare(repository), PATH)) if "removed" in line]
+    assert "state_interface velocity removed" in line
+    assert "only with" not in line

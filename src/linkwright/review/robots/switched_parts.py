@@ -65,7 +65,8 @@ class SwitchedParts:
         if not _is_removal(difference):
             return text
         key = _make_key(difference)
-        switch = next((switch for switch in self._switches if key not in switch.lacking), None)
+        wholes = _list_wholes(key)
+        switch = next((switch for switch in self._switches if switch.lacking.isdisjoint(wholes)), None)
         if switch is None:
             return text
         if key in switch.values:
@@ -141,6 +142,13 @@ def _list_lacking_parts(differences: Iterable[Difference]) -> Iterator[_Part]:
             yield subject, name, part
         elif _SHAPE in part:
             yield subject, name, part.partition(_SHAPE)[0]
+
+
+def _list_wholes(part: _Part) -> list[_Part]:
+    """Return a part, the parts that contain it, and the whole object."""
+    subject, name, text = part
+    words = text.split(" ")
+    return [(subject, name, " ".join(words[:count])) for count in range(len(words) + 1)]
 
 
 def _make_key(difference: Difference) -> _Part:

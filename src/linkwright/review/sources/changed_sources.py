@@ -63,6 +63,11 @@ class ChangedSources:
         self._used_by_package: dict[str, UsedPackages] = {}
         self._moved_code: dict[str, MovedCode] | None = None
         self._renamed_words: dict[str, str] | None = None
+        self._counterpart: ChangedSources | None = None
+
+    def connect(self, other: ChangedSources) -> None:
+        """Set the changed sources of the other version, in both directions."""
+        self._counterpart, other._counterpart = other, self
 
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -172,8 +177,23 @@ class ChangedSources:
         )
 
     @cached_property
-    def _known_names(self) -> frozenset[tuple[NameKind, str, bool]]:
-        return frozenset(_make_key(item, path) for path, names in self._names.items() for item in names.names)
+    def _known_names(self) -> Mapping[tuple[NameKind, str, bool], Sequence[str]]:
+        """The paths of the changed sources that have a name."""
+        found: dict[tuple[NameKind, str, bool], list[str]] = {}
+        for path, names in self._names.items():
+            for key in dict.fromkeys(_make_key(item, path) for item in names.names):
+                found.setdefault(key, []).append(path)
+        return found
+
+    def _is_known(self, item: SourceName, path: str) -> bool:
+        """Return whether a changed source has a name that may have moved to it or from it.
+
+        A source of another package that has the name in both versions keeps its own one.
+        """
+        key, package = _make_key(item, path), self.find_package(path)
+        other = self._counterpart._known_names if self._counterpart is not None else {}
+        kept = frozenset(other.get(key, ()))
+        return any(owner not in kept or self.find_package(owner) == package for owner in self._known_names.get(key, ()))
 
     @cached_property
     def _methods(self) -> ClassMethods:
@@ -221,7 +241,7 @@ class ChangedSources:
             return not self._has_in_imported(item, path)
         if item.kind is NameKind.IMPORT:
             return True
-        if _make_key(item, path) in self._known_names:
+        if self._is_known(item, path):
             return False
         if item.kind is NameKind.FUNCTION and self._methods.has_function(item.name):
             return False
@@ -244,7 +264,7 @@ class ChangedSources:
         A source in other programs is another node, which failed before.
         """
         package = self.find_package(path)
-        if package is None or _make_key(item, path) in self._known_names:
+        if package is None or self._is_known(item, path):
             return None
         reader = self._get_unchanged(package).find_undeclared_reader(item.name)
         is_other = reader is not None and are_in_separate_programs(self.version, package, path, [reader])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
@@ -459,14 +459,17 @@ def _read_arguments_after(command: Command, keyword: str, kind: FactKind) -> Ite
 
 def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
-        if command.name == "find_package" and command.arguments:
+        if command.name in _FIND_COMMANDS and command.arguments:
             package, *options = command.arguments
+            if command.name != "find_package":
+                options = [item for item in _list_before(options, _GAZEBO_KEYWORDS) if item.text != "VERSION"]
             version = next((other.text for other in options[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
             value = version if "REQUIRED" in command.words or package.text == "catkin" else f"{version}, optional"
             if value != version and _is_guarded(package):
                 value = f"{version}{WITHOUT_NOTHING}"
             yield _make_fact(FactKind.PACKAGE, package, value)
-            start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(options)
+            words = [item.text for item in options]
+            start = words.index("COMPONENTS") + 1 if "COMPONENTS" in words else len(options)
             if package.text == "catkin":
                 start = 0  # the keyword is optional
             for component in options[start:]:
@@ -474,6 +477,11 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
                     required = ANY_VERSION if package.text == "catkin" else ""
                     yield _make_fact(FactKind.PACKAGE, component, required, name)
+
+
+def _list_before(arguments: Sequence[Argument], keywords: Collection[str]) -> list[Argument]:
+    """Return the arguments before the first one of several keywords."""
+    return list(takewhile(lambda argument: argument.text not in keywords, arguments))
 
 
 def _is_guarded(package: Argument) -> bool:
@@ -526,12 +534,16 @@ def _read_include_folders(commands: Sequence[Command]) -> Iterator[Fact]:
                     yield _make_fact(FactKind.INCLUDE_FOLDER, argument)
 
 
+_FIND_COMMANDS = ("find_package", "gz_find_package", "ign_find_package")
+"""The commands that find a package; those of the build tools of Gazebo call ``find_package``."""
+_GAZEBO_KEYWORDS = frozenset({"REQUIRED_BY", "PRIVATE_FOR", "PKGCONFIG", "PRETTY", "PURPOSE", "EXTRA_ARGS"})
+"""The keywords of the commands of Gazebo whose values are neither a version nor a component."""
 _INCLUDE_COMMANDS = ("include_directories", "target_include_directories")
 _FACT_COMMANDS = frozenset(
     {
         *("ament_auto_add_executable", "ament_auto_add_library", "rclcpp_components_register_node"),
         *("rclcpp_components_register_nodes", "pluginlib_export_plugin_description_file"),
-        *("ament_export_dependencies", "find_package", "cmake_minimum_required", "option"),
+        *("ament_export_dependencies", *_FIND_COMMANDS, "cmake_minimum_required", "option"),
         *("ament_python_install_package", "ament_python_install_module"),
         *("add_executable", "add_library", "add_dependencies", "target_link_libraries", "target_include_directories"),
         *("ament_target_dependencies", "include_directories", "target_sources", "catkin_package", "generate_messages"),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import yaml
 
@@ -13,6 +14,8 @@ from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameters.yaml_values import compose_yaml
 from linkwright.review.texts.list_changes import change_text
+from linkwright.review.texts.merged_reasons import merge_reasons
+from linkwright.review.texts.merging import name_edit
 
 _TOPIC_KEYS = ("ros_topic_name", "topic_name", "gz_topic_name", "ign_topic_name")
 _ROS_TYPE, _DIRECTION = "ros_type_name", "direction"
@@ -77,8 +80,16 @@ def _read_bridge(node: yaml.Node) -> Bridge | None:
 def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]) -> None:
     """Compare two versions of a configuration of bridges, topic by topic."""
     unmatched_old, unmatched_new = list(old), list(new)
+    groups: dict[Hashable, list[_SettingChange]] = {}
     for old_bridge, new_bridge in list(_take_matching_pairs(unmatched_old, unmatched_new)):
-        _compare_settings(pair, old_bridge, new_bridge)
+        for change in _compare_settings(old_bridge, new_bridge):
+            groups.setdefault(change.key, []).append(change)
+    for first, *others in groups.values():
+        reason = merge_reasons(change.reason for change in (first, *others))
+        pair.add(first.text, Location(pair.new_path, *first.position), reason)
+        names = tuple(change.name for change in others)
+        locations = tuple(Location(pair.new_path, *change.position) for change in others)
+        pair.changes[-1] = replace(pair.changes[-1], other_names=names, other_locations=locations)
     for bridge in unmatched_new:
         text = _append_contents(phrase("bridge '{topic}' added", topic=bridge.topic), bridge)
         pair.add(text, Location(pair.new_path, bridge.line, bridge.column))
@@ -124,21 +135,44 @@ def _make_match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | N
     return known_values if len(known_values) == len(names) else None
 
 
-def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
-    if old.topic != new.topic:
-        line, column = new.positions[next(key for key in _TOPIC_KEYS if key in new.settings)]
-        text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
-        is_same = old.topic.lstrip("/") == new.topic.lstrip("/")  # the same name in the empty namespace
-        pair.add(text, Location(pair.new_path, line, column), None if is_same else explain_lost_topic(old.topic))
+class _SettingChange(NamedTuple):
+    """A changed setting of a bridge.
+
+    Attributes:
+        key: a key that is equal for topics that are edited alike.
+        name: the topic, with the old one if it is renamed.
+        text: the sentence about the change.
+        position: the line and the column of the setting.
+        reason: the reason why the change is breaking; None if it is not.
+    """
+
+    key: Hashable
+    name: str
+    text: Phrase
+    position: tuple[int, int]
+    reason: Phrase | None
+
+
+def _compare_settings(old: Bridge, new: Bridge) -> Iterator[_SettingChange]:
+    """Yield the settings that differ. The topic in ROS is the first one."""
+    topic = new.topic
+    topic_key = next((key for key in _TOPIC_KEYS if key in new.settings), "")
+    if old.topic != topic:
+        is_same = old.topic.lstrip("/") == topic.lstrip("/")  # the same name in the empty namespace
+        reason = None if is_same else explain_lost_topic(old.topic)
+        key = topic_key, name_edit(old.topic, topic), reason and reason.template
+        text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=topic)
+        yield _SettingChange(key, f"{old.topic} -> {topic}", text, new.positions[topic_key], reason)
     for name in dict.fromkeys([*new.settings, *old.settings]):
         before, after = old.settings.get(name), new.settings.get(name)
-        is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)
-        if before == after or (is_name and old.topic != new.topic):
+        if before == after or (name == topic_key and old.topic != topic):
             continue
-        line, column = new.positions.get(name, (new.line, new.column))
+        is_topic = name in _TOPIC_KEYS and before is not None and after is not None
+        edit = name_edit(before or "", after or "") if is_topic else topic
         change = change_text(name, "-" if before is None else before, "-" if after is None else after)
-        text = phrase("bridge '{topic}': {change}", topic=new.topic, change=change)
-        pair.add(text, Location(pair.new_path, line, column), _find_setting_reason(new.topic, name, before, after))
+        text = phrase("bridge '{topic}': {change}", topic=topic, change=change)
+        reason = _find_setting_reason(topic, name, before, after)
+        yield _SettingChange((name, edit), topic, text, new.positions.get(name, (new.line, new.column)), reason)
 
 
 def _find_setting_reason(topic: str, name: str, old: str | None, new: str | None) -> Phrase | None:

@@ -114,7 +114,7 @@ def find_shown_statements(old: Code, new: Code, lines: ReportedLines, names: Sou
 
 
 def describe_outside_statements(old: Code, new: Code, reported: Sequence[Change]) -> Phrase | None:
-    """Return the statements outside of functions and classes that differ, or None if they are many or none.
+    """Return the statements outside of functions and classes that differ, or None. Of many, those that tell most.
 
     Args:
         old: the code of the old version.
@@ -123,10 +123,11 @@ def describe_outside_statements(old: Code, new: Code, reported: Sequence[Change]
     """
     parts = old.outside.get("", ()), new.outside.get("", ())
     sides = _Sides(old, new, has_outside=True)
-    differences = list(_compare("", *parts, ReportedLines(reported), sides))
-    if not differences or len(differences) > _MAX_STATEMENTS:
+    differences = _merge_equal(_compare("", *parts, ReportedLines(reported), sides))
+    shown = differences if len(differences) <= _MAX_STATEMENTS else _select(differences)
+    if not shown:
         return None
-    return phrase("outside of functions: {changes}", changes=_join(differences, 0))
+    return phrase("outside of functions: {changes}", changes=_join(shown, len(differences) - len(shown)))
 
 
 class _Sides:
