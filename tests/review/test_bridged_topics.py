@@ -99,6 +99,19 @@ def test_an_argument_with_a_fixed_value_refuses_the_values_of_callers(repository
     assert not any("1.0" in sentence for sentence in found)
 
 
+def test_a_default_instead_of_a_fixed_value_is_one_line(repository, compare):
+    path, told = "arm/launch/arm.launch", "a default now instead of a fixed value, so that callers can set it"
+    fixed = FIXED.format("value", "", "value")
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: fixed})
+    repository.write({path: FIXED.format("default", "", "default")})
+    assert sentences(subject(compare(repository), path)) == [f"argument 'x', argument 'y': {told}"]
+    repository.write({path: FIXED.format("default", "", "value").replace("1.0", "2.0", 1)})
+    found = sentences(subject(compare(repository), path))
+    assert f"argument 'x': {told}" in found
+    assert "argument 'x': default 1.0 -> 2.0" in found
+    assert breaking(compare(repository)) == []
+
+
 def test_an_unknown_file_does_not_declare_an_argument_with_a_default_in_the_file(repository, compare):
     new = """IncludeLaunchDescription("$(find-pkg-share other)/a.launch.py"),
         Node(package="arm", executable="arm", condition=IfCondition(LaunchConfiguration("dock"))),"""

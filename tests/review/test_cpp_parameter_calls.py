@@ -192,3 +192,38 @@ def test_the_range_of_a_parameter_rejects_values(repository, compare, old, new, 
     changes = [change for found in compare(repository).subjects for change in found.changes]
     lines = {str(item.sentence): item.reason and str(item.reason) for item in changes if "gain" in str(item.sentence)}
     assert lines == expected
+
+
+FLAG = """int main(int argc, char** argv) {
+  ros::NodeHandle nh;
+  double mass = 0.0;
+  double load = 0.0;
+  bool ok = true;
+  BODY
+  ros::spin();
+  return 0;
+}
+"""
+LOAD = 'ok &= nh.getParam("load", load);'
+FAIL = 'if (!ok) { ROS_ERROR("no value"); return 1; }'
+
+
+@pytest.mark.parametrize(
+    ("code", "is_breaking"),
+    [
+        ('ok &= nh.getParam("mass", mass); LOAD FAIL', True),
+        ('ok = ok && nh.getParam("mass", mass); ok = ok && nh.getParam("load", load); FAIL', True),
+        ('ok = nh.getParam("mass", mass); FAIL', True),
+        # another call replaces the result, any of them is enough, or the program continues
+        ('ok = nh.getParam("mass", mass); ok = nh.getParam("load", load); FAIL', False),
+        ('ok |= nh.getParam("mass", mass); ok |= nh.getParam("load", load); FAIL', False),
+        ('ok &= nh.getParam("mass", mass); if (!ok) ROS_WARN("no mass");', False),
+        ('ok &= nh.getParam("mass", mass); if (argc > 1) { FAIL }', False),
+    ],
+)
+def test_a_parameter_whose_result_is_tested_later_is_required(repository, compare, code, is_breaking):
+    code = code.replace("LOAD", LOAD).replace("FAIL", FAIL)
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": FLAG.replace("BODY", "")})
+    repository.write({"arm/src/arm.cpp": FLAG.replace("BODY", code)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert any("'mass'" in reason for reason in reasons) is is_breaking, reasons

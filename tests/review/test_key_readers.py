@@ -195,3 +195,41 @@ def test_a_file_that_loses_all_parameters_of_its_nodes(repository, compare, sour
     found = [(str(change.sentence), str(change.reason)) for _, change in compare(repository).breaking_changes]
     reason = "the nodes that load the file start without these parameters"
     assert [line for line, own_reason in found if own_reason == reason] == expected
+
+
+START = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("a"), "config", "arm.yaml")
+    return LaunchDescription([Node(package="a", executable="lamp", name="lamp", parameters=[file])])
+"""
+XML = '<launch><arg name="arm"/><node pkg="a" exec="lamp" name="lamp"><param from="config/arm.yaml"/></node></launch>'
+OTHER = 'auto node = std::make_shared<rclcpp::Node>("arm_node");\n'
+SECOND = START.replace("[Node", '[Node(package="a", executable="arm", parameters=[file]), Node')
+
+
+@pytest.mark.parametrize(
+    ("launches", "is_breaking"),
+    [
+        ({"a/launch/lamp.launch.py": START}, False),
+        ({"a/launch/lamp.launch.xml": XML}, False),
+        ({"a/launch/lamp.launch.py": START, "a/launch/arm.launch.py": START.replace("lamp", "leg")}, False),
+        # the old node gets the file, another program may be the old node, or an included file may start it
+        ({"a/launch/lamp.launch.py": START.replace("lamp", "arm_node")}, True),
+        ({"a/launch/lamp.launch.py": START, "a/launch/arm.launch.py": START.replace("lamp", "arm_node")}, True),
+        ({"a/launch/lamp.launch.py": SECOND}, True),
+        ({"a/launch/lamp.launch.py": START + "    # x\n    IncludeLaunchDescription(file)\n"}, True),
+        ({"a/launch/lamp.launch.py": START.replace("arm.yaml", "other.yaml")}, True),
+    ],
+)
+def test_renamed_node_of_a_file_that_only_the_new_node_got_is_not_breaking(repository, compare, launches, is_breaking):
+    files = {"a/package.xml": FILES["a/package.xml"], "a/src/arm.cpp": OTHER, **launches}
+    more = NODE + "    force: 2.0\n    speed: 3.0\n"
+    repository.commit({**files, PATH: more})
+    repository.write({PATH: more.replace("arm_node", "lamp")})
+    (found,) = (found for found in compare(repository).subjects if found.path == PATH)
+    assert [str(change.sentence) for change in found.changes] == ["arm_node renamed to lamp"]
+    assert [change.reason is not None for change in found.changes] == [is_breaking]

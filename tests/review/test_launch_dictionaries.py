@@ -81,3 +81,42 @@ def test_item_that_no_action_shows_is_other_code(review_changes, old, new, value
     (change,) = review_changes(UNKNOWN, old, new)
     assert change.startswith("other code: ")
     assert value in change
+
+
+CAMERAS = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+CAMERAS = {"left": {"serial": "11"}, "right": {"serial": "22"}}
+SHARED = {"rate": 10}
+TOOL = {"size": 1}
+
+
+def make_parameters():
+    values = {"cameras": list(CAMERAS)}
+    for camera, settings in CAMERAS.items():
+        values.update({camera + "." + key: value for key, value in SHARED.items()})
+        values[camera + ".serial"] = settings["serial"]
+    values["kind"] = "stereo"
+    values["mode"] = "fast"
+    return values
+
+
+def generate_launch_description():
+    tool = Node(package="arm", executable="tool", parameters=[TOOL])
+    return LaunchDescription([tool, Node(package="arm", executable="cameras", parameters=[make_parameters()])])
+"""
+
+
+def test_values_that_other_statements_read_are_told_beside_changed_statements(repository, compare):
+    new = CAMERAS.replace('"11"', '"12"').replace('"rate": 10', '"rate": 15').replace('"size": 1', '"size": 2')
+    new = new.replace('    values["kind"] = "stereo"\n    values["mode"] = "fast"\n', "")
+    repository.commit({"arm/launch/arm.launch.py": CAMERAS})
+    repository.write({"arm/launch/arm.launch.py": new})
+    found = [text for each in compare(repository).subjects for text in sentences(each)]
+    right = "'right': {'serial': '22'}}"
+    assert found == [
+        "node 'arm/tool': parameter size 1 -> 2",
+        f"values of 'CAMERAS': {{'left': {{'serial': '11'}}, {right} -> {{'left': {{'serial': '12'}}, {right}",
+        "values of 'SHARED': {'rate': 10} -> {'rate': 15}",
+        "other code changed, such as `values['kind'] = 'stereo'` removed, `values['mode'] = 'fast'` removed",
+    ]

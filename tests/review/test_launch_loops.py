@@ -47,8 +47,8 @@ def test_an_item_that_only_a_condition_reads_starts_a_node_and_is_other_code(rev
         "        actions.append", "        if port:\n            actions.append"
     )
     found, _ = review_changes("arm.launch.py", text, text, text.replace('(2, "b")', '(0, "b")'))
-    old, new = (f"PORTS = [('left', (1, 'a')), ('right', ({number}, 'b'))]" for number in (2, 0))
-    assert found == ["node 'arm/driver' removed: name right_1, output screen", f"other code: {old} -> {new}"]
+    old, new = (f"[('left', (1, 'a')), ('right', ({number}, 'b'))]" for number in (2, 0))
+    assert found == ["node 'arm/driver' removed: name right_1, output screen", f"values of 'PORTS': {old} -> {new}"]
 
 
 @pytest.mark.parametrize("items", ["zip(SIDES, other())", "enumerate(other())", "enumerate(SIDES, start=1)"])

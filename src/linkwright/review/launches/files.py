@@ -86,6 +86,8 @@ from linkwright.review.texts.excerpts import differing_excerpts, shorten_middle
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
+_COLLECTION = re.compile(r"(\w+) = [\[{]")
+"""The beginning of a statement that gives a name to a dictionary or list."""
 _SETTING_STATEMENT = re.compile(r"\w+\[.+?\] = |\w+\.(?:append|extend|update|insert|setdefault|pop|remove)\(")
 """The start of a statement that changes an item of a dictionary or list."""
 _MAX_CONDITION_CHARACTERS = 240
@@ -417,6 +419,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
             parts += _find_used_definitions(common_sources, outline, changed) or changed
     removed, added = _drop_definitions(removed, new), _drop_definitions(added, old)
     added = _report_failures(pair, added, old, new)
+    removed, added = _report_changed_definitions(pair, removed, added)
     if not removed and not added:
         return
     location = pair.location(added[0].span) if added else None
@@ -436,6 +439,30 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         functions = [*_find_functions(pair.new_file, added), *_find_functions(pair.old_file, removed)]
         functions = functions if is_shown_in_function else []
         pair.add(_format_code_change(removed, added, list(dict.fromkeys(functions))), location)
+
+
+def _report_changed_definitions(
+    pair: FilePair, removed: Sequence[CodePart], added: Sequence[CodePart]
+) -> tuple[list[CodePart], list[CodePart]]:
+    """Report the dictionaries and lists that a name gets in both versions, and return the other statements.
+
+    Their values may be parameters of nodes, which other statements compute.
+    """
+    old, new = ({_find_collection_name(part): part for part in parts} for parts in (removed, added))
+    changed = [(old[name], part) for name, part in new.items() if name is not None and name in old]
+    for old_part, new_part in changed:
+        name, _, new_value = new_part.source.partition(" = ")
+        before, after = differing_excerpts(old_part.source.partition(" = ")[2], new_value)
+        pair.add(
+            phrase("values of '{name}': {old} -> {new}", name=name, old=before, new=after), pair.location(new_part.span)
+        )
+    told = {id(part) for parts in changed for part in parts}
+    return [part for part in removed if id(part) not in told], [part for part in added if id(part) not in told]
+
+
+def _find_collection_name(part: CodePart) -> str | None:
+    match = _COLLECTION.match(part.source)
+    return None if match is None else match[1]
 
 
 def _drop_definitions(parts: Sequence[CodePart], other: LaunchOutline) -> list[CodePart]:
@@ -523,8 +550,9 @@ def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart], 
     """Return the sentence about changed statements, which names their functions and quotes the first statement."""
     parts = added or removed
     code: str | Phrase = shorten_middle(parts[0].source, _MAX_STATEMENT_CHARACTERS)
-    if removed and added:
-        code = _list_setting_statements(removed, added) or code
+    settings = _list_setting_statements(removed, added)
+    if (removed and added) or (settings is not None and len(parts) > 1):
+        code = settings or code
         if functions:
             names = joined_first([f"'{name}()'" for name in functions], MAX_NAMES)
             return phrase("other code changed in {names}, such as {code}", names=names, code=code)

@@ -11,7 +11,7 @@ from linkwright.review.breaking import name_reason, names_reason, possible_name_
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameters.names import find_lost_output_reason, offers_frame
-from linkwright.review.launches.arguments.fixed import fix_value
+from linkwright.review.launches.arguments.fixed import fix_value, free_value
 from linkwright.review.launches.bridged_topics import explain_lost_arguments
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.conditions import evaluate_condition
@@ -210,6 +210,10 @@ class SettingChanges:
         settings = []
         if old.kind == "argument" and "default" in old.settings and "default" not in new.settings:
             old = fix_value(old) if "value" in new.settings else old
+        elif old.kind == "argument" and "value" in old.settings and "value" not in new.settings:
+            old = free_value(old)
+            if "default" in new.settings:
+                self._collect(new, phrase("a default now instead of a fixed value, so that callers can set it"), None)
         pairs = list(find_changed_settings(old, new, self._old, self._new))
         for pair in follow_moved_parameters(pairs, self._new, self._pair.versions.new):
             if self._sets_default_name(new, pair.name, pair.old, pair.new):

@@ -1,4 +1,4 @@
-"""Find arguments of launch files whose defaults newly choose the hardware of the robot, or another simulation."""
+"""Find arguments whose defaults newly choose the hardware of the robot or another simulation, or activate nothing."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ _SIMULATED = re.compile(
 """The names of arguments that replace the hardware by a simulation."""
 _PAUSED = re.compile(r"(?:start_)?paused?")
 """The names of arguments with which a simulation starts paused."""
+_AUTOSTART = "autostart"
+"""The argument and parameter with which the managers of lifecycle nodes, such as those of Nav2, activate the nodes."""
 _CLOCK_SOURCE = re.compile(
     r"sim(?![a-z])|simulat|gazebo|ignition|(?<![a-z])(?:gz|ign)(?![a-z])|webots|isaac|mujoco|coppelia|vrep|stage|unity"
     r"|flatland|carla|airsim|bag(?![a-z])|rosbag|clock|replay|player|demo|test|example",
@@ -28,6 +30,8 @@ _FALSE = frozenset({"false", "0", "no", "off"})
 def find_hardware_reason(name: str, old: str, new: str) -> Phrase | None:
     """Return the reason why another default is breaking that switches between hardware and a simulation, or pauses it.
 
+    So is one with which the nodes do not become active.
+
     Args:
         name: the name of the argument.
         old: its old default.
@@ -36,6 +40,8 @@ def find_hardware_reason(name: str, old: str, new: str) -> Phrase | None:
     before, after = old.strip().lower(), new.strip().lower()
     if _PAUSED.fullmatch(name.lower()) is not None and before in _FALSE and after in _TRUE:
         return phrase("the simulation starts paused")
+    if name == _AUTOSTART and before in _TRUE and after in _FALSE:
+        return phrase("the nodes wait for a program that activates or starts them")
     if _SIMULATED.fullmatch(name.lower()) is None:
         return None
     if before in _TRUE and after in _FALSE:

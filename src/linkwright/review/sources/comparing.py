@@ -68,14 +68,12 @@ from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.python.package_imports import (
     is_installed_package,
 )
-from linkwright.review.sources.python.unreachable_modules import is_unreachable
 from linkwright.review.sources.reasons import (
     find_message_frame_reason,
     find_removal_reason,
     is_used_by_others,
     make_reader_reason,
 )
-from linkwright.review.sources.separate_programs import is_in_no_installed_program
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.statements.frame_changes import drop_told_frames
@@ -353,22 +351,12 @@ class _SourcePair(PairedNames):
         paths = self.file.path, self.file.old_path or self.file.path
         return self.file.new_path is not None and has_only_in_other_nodes(item, self.new, self.old, paths)
 
-    def _is_unreachable(self) -> bool:
-        """Return whether nothing starts or imports the source, in each version that has it."""
-        sides = ((self.old, self.file.old_path), (self.new, self.file.new_path))
-        return all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path)
-
-    def _was_not_installed(self) -> bool:
-        """Return whether the old version built the source only into programs that it did not install, or not at all."""
-        path = self.file.old_path
-        return path is not None and is_in_no_installed_program(self.old.version, self.old.find_package(path), path)
-
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
         is_used = items[0].kind in (*_DECLARED_KINDS, NameKind.IMPORT)
-        if not is_used and (self._is_unreachable() or self._was_not_installed()):
+        if not is_used and self.is_not_started():
             return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]

@@ -1,4 +1,4 @@
-"""Recognize publishers with which a source never published a message."""
+"""Recognize publishers with which a source never published a message, or no longer publishes one."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Iterator
 from pathlib import PurePosixPath
 
+from linkwright.files.git_repository import ChangedFile
 from linkwright.review.sources.changed_sources import imports
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 from linkwright.review.texts.comments import without_comments
@@ -32,15 +33,42 @@ def is_unused_publisher(item: SourceName, names: SourceNames, version: Version, 
         version: the version with the source.
         path: the path of the source.
     """
+    return _find_unused_variable(item, names, version, path) is not None
+
+
+def find_silent_publishers(old: Version, new: Version, file: ChangedFile, names: SourceNames) -> list[SourceName]:
+    """Return the publishers that both versions have but whose variable only the old version used to publish.
+
+    Args:
+        old: the old version.
+        new: the new version.
+        file: the changed source.
+        names: all names in the new source.
+    """
+    if file.old_path is None or file.new_path is None:
+        return []
+    text = without_comments(old.text(file.old_path), file.old_path)
+    unused = [(item, _find_unused_variable(item, names, new, file.new_path)) for item in names.names]
+    return [
+        item
+        for item, variable in unused
+        if variable is not None
+        and re.search(rf"[\"']{re.escape(item.name)}[\"']", text)
+        and re.search(rf"\b{variable}\s*(?:\.|->)\s*publish\s*\(", text)
+    ]
+
+
+def _find_unused_variable(item: SourceName, names: SourceNames, version: Version, path: str) -> str | None:
+    """Return the variable of a publisher that nothing uses; None if it is used, or for another name."""
     if item.kind is not NameKind.PUBLISHER or names.counts[item.kind, item.name] != 1:
-        return False
+        return None
     text = without_comments(version.text(path), path)
     start = sum(map(len, version.text(path).splitlines(keepends=True)[: item.span.line]))
     matches = [match for match in _ASSIGNED.finditer(text, 0, start) if text.count(")", match.end(), start) <= 1]
     quoted = re.compile(rf"[\"']{re.escape(item.name)}[\"']")
     if not matches or quoted.search(text, matches[-1].end(), start) is None:
-        return False
-    variable = matches[-1]["variable"]
+        return None
+    variable: str = matches[-1]["variable"]
     is_python = path.endswith(PYTHON_SUFFIX)
     folder = version.package_of(path) or ""
     paths = _find_connected(version, path) if is_python else version.paths(CPP_SUFFIXES, folder)
@@ -49,7 +77,8 @@ def is_unused_publisher(item: SourceName, names: SourceNames, version: Version, 
     declared = re.compile(_DECLARED.format(variable=variable))
     uses = sum(len(word.findall(other)) for other in texts)
     declarations = 0 if is_python else sum(len(declared.findall(other)) for other in texts)
-    return uses == 1 + min(declarations, 1) and not any(map(_BY_TEXT.search, texts))
+    is_unused = uses == 1 + min(declarations, 1) and not any(map(_BY_TEXT.search, texts))
+    return variable if is_unused else None
 
 
 def _find_connected(version: Version, path: str) -> Collection[str]:

@@ -39,13 +39,15 @@ from linkwright.review.sources.python.package_imports import (
     is_installed_package,
 )
 from linkwright.review.sources.python.undefined_uses import find_undefined_uses
+from linkwright.review.sources.python.unreachable_modules import is_unreachable
 from linkwright.review.sources.rates import compare_loops, compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_removal_reason
-from linkwright.review.sources.separate_programs import are_in_separate_programs
+from linkwright.review.sources.separate_programs import are_in_separate_programs, is_in_no_installed_program
 from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.unread_parameters import is_only_declared
 from linkwright.review.sources.unused_parameters import find_unused_parameters, is_read_without_use
+from linkwright.review.sources.unused_publishers import find_silent_publishers
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Version
 
@@ -242,8 +244,25 @@ class WholeSourcePair:
             path = old_path if change.is_old else new_path
             yield Change(change.text, location=Location(path, line, 1, change.is_old))
 
+    def is_not_started(self) -> bool:
+        """Return whether nothing starts or imports the source in any version, or no installed program had it."""
+        sides = ((self.old, self.file.old_path), (self.new, self.file.new_path))
+        if all(is_unreachable(side.version, side.find_package(path), path) for side, path in sides if path):
+            return True
+        path = self.file.old_path
+        return path is not None and is_in_no_installed_program(self.old.version, self.old.find_package(path), path)
+
     def find_changed_senders(self, reported: Sequence[Change]) -> Iterator[Change]:
-        """Yield a line if the source no longer publishes transforms or newly does, unless a line names the frames."""
+        """Yield the publishers that newly publish nothing, and whether the source starts or stops to send transforms.
+
+        Transforms count unless a line names their frames.
+        """
+        names = self.new.get_names(self.file.new_path)
+        for item in find_silent_publishers(self.old.version, self.new.version, self.file, names):
+            is_harmless = self.new.has_in_unchanged(item, self.file.path) or self.is_not_started()
+            reason = phrase("programs that subscribe to '{name}' get no messages", name=item.name)
+            text = phrase("nothing is published with the publisher '{name}' any more", name=item.name)
+            yield self.make_change(text, item.span, self.new, None if is_harmless else reason)
         frames = (NameKind.FRAME.title, NameKind.FRAME.plural)
         if not any(change.core.arguments.get("kind") in frames for change in reported):
             span = find_one_sided_sender(self.old, self.new, self.file, is_old=True)

@@ -25,6 +25,11 @@ _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
 _PLACEHOLDER = re.compile(r"[A-Z][A-Z0-9_]*|<\w+>|\$\{?\w+\}?")
 """A value that another one can replace."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
+_WORDS = re.compile(r"[./]")
+_LAUNCH_SUFFIXES = (".py", ".launch", ".xml", ".yaml", ".yml", ".sh")
+_STARTED = re.compile(r"\b(?:executable|plugin)\s*=|<(?:node|composable_node)\b")
+_NODE_NAME = re.compile(r"(?:[(,]|<node\b[^<>]*\s)\s*name\s*=\s*[\"'](\w+)[\"']")
+_OTHER_FILE = re.compile(r"IncludeLaunchDescription|<include\b|ros2 (?:run|launch)")
 
 
 @dataclass(frozen=True)
@@ -104,13 +109,30 @@ class KeyReaders:
     def have_renamed_node(self, node: str, new_nodes: Iterable[str]) -> bool:
         """Return whether the programs name one of the new nodes of the file, and no longer a lost one.
 
-        The file then follows the programs.
+        The file then follows the programs. So does a file that the old version only gave to a new one.
 
         Args:
             node: the lost node.
             new_nodes: the nodes that only the new version of the file has.
         """
-        return not self._is_node_named(node) and any(map(self._is_node_named, new_nodes))
+        names = [_WORDS.split(name)[-1] for name in new_nodes]
+        is_named = any(map(self._is_node_named, names))
+        return is_named and (not self._is_node_named(node) or self._was_given_to(names, instead_of=node))
+
+    def _was_given_to(self, nodes: Collection[str], *, instead_of: str) -> bool:
+        """Return whether the old version started one of these nodes with the file, but not another node.
+
+        Each launch file that contained the name of the file must have started one program, with a name of its own.
+        """
+        version, pattern = self.versions.old, re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(self.path).name)}\b")
+        paths = [path for path in version.paths(_LAUNCH_SUFFIXES) if _names(version, path, pattern)]
+        texts = [_COMMENT.sub(r"\1", version.text(path)) for path in paths]
+        names = [_NODE_NAME.findall(text) for text in texts]
+        return (
+            all(len(_STARTED.findall(text)) == 1 and not _OTHER_FILE.search(text) for text in texts)
+            and all(len(found) == 1 and found[0] != _WORDS.split(instead_of)[-1] for found in names)
+            and any(found[0] in nodes for found in names)
+        )
 
     def is_package_without_node(self, name: str) -> bool:
         """Return whether a name is that of a package of the repository, and no program or description has it as a text.
@@ -145,7 +167,7 @@ class KeyReaders:
 
     def _is_node_named(self, node: str) -> bool:
         """Return whether a program of the new version contains the last part of a node's name as a text."""
-        pattern = re.compile(rf"[\"'/]{re.escape(re.split(r'[./]', node)[-1])}[\"']")
+        pattern = re.compile(rf"[\"'/]{re.escape(_WORDS.split(node)[-1])}[\"']")
         return any(_names(self.versions.new, path, pattern) for path in self._list_paths(_PROGRAM_SUFFIXES, ()))
 
     @cached_property

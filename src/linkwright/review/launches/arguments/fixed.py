@@ -31,7 +31,16 @@ def report_fixed_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutlin
 
 def fix_value(argument: Entry) -> Entry:
     """Return an argument whose default is a fixed value."""
-    settings = {"value" if name == "default" else name: value for name, value in argument.settings.items()}
+    return _rename_setting(argument, "default", "value")
+
+
+def free_value(argument: Entry) -> Entry:
+    """Return an argument whose fixed value is a default."""
+    return _rename_setting(argument, "value", "default")
+
+
+def _rename_setting(argument: Entry, old: str, new: str) -> Entry:
+    settings = {new if name == old else name: value for name, value in argument.settings.items()}
     return replace(argument, settings=settings)
 
 

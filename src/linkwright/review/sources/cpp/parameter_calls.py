@@ -13,6 +13,12 @@ from linkwright.review.sources.cpp.values import VARIABLE, InitialValues, parse_
 
 _IF = re.compile(r"\bif\s*(?=\()")
 _NEGATED = re.compile(r"!\s*(?:\w+\s*(?:\(\s*\))?\s*(?:\.|->|::)\s*)*\Z")
+_FLAG = re.compile(
+    r"(?<![\w.>])(?P<flag>\w+)\s*(?:&=|=\s*(?P=flag)\s*&&?|=)\s*(?:\w+\s*(?:\(\s*\))?\s*(?:\.|->|::)\s*)*\Z"
+)
+"""The beginning of a statement that keeps in a variable whether a call found its parameter."""
+_MAIN = re.compile(r"\bint\s+main\s*\(")
+_EXIT_CODE = re.compile(r"\breturn\s+[1-9]\d*\s*;")
 _READ_ARGUMENTS = 2
 """The number of arguments of ``getParam``: the name and the variable for the value."""
 _LITERAL = r"-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\""
@@ -104,7 +110,15 @@ def is_required_parameter(text: str, call: Call, arguments: Sequence[str]) -> bo
     if call.function in _TYPED_CALLS and call.type and all(map(_DESCRIPTOR.match, arguments)):
         return re.search(r"\bcatch\b", text) is None and not is_in_branch(text, call.start)
     branch = _find_branch_of_failure(text, call)
-    return FAILURE.search(branch) is not None and not is_in_branch(text, call.start)
+    is_failure = FAILURE.search(branch) or (_EXIT_CODE.search(branch) and _is_in_main(text, call.start))
+    return bool(is_failure) and not is_in_branch(text, call.start)
+
+
+def _is_in_main(text: str, position: int) -> bool:
+    """Return whether a place is in the function ``main()``."""
+    mains = list(_MAIN.finditer(text, 0, position))
+    body = text[mains[-1].end() : position] if mains else ""
+    return body.count("{") > body.count("}")
 
 
 def find_type_of_default(text: str, arguments: Sequence[str]) -> str:
@@ -143,6 +157,9 @@ def _find_branch_of_failure(text: str, call: Call) -> str:
     """Return the code that runs if a call does not find its parameter; empty if that is not certain."""
     if call.function not in ("getParam", "get_parameter"):
         return ""
+    flag = _FLAG.search(text, max(0, call.start - MAX_CONDITION_CHARACTERS), call.start)
+    if flag is not None:
+        return _find_branch_without(text, flag["flag"], call.start)
     begin = max(0, call.start - MAX_CONDITION_CHARACTERS)
     conditions = [match.end() for match in _IF.finditer(text, begin, call.start)]
     if not conditions:
@@ -152,6 +169,15 @@ def _find_branch_of_failure(text: str, call: Call) -> str:
     if not start < call.start < end or "&&" in text[start:end] or not _NEGATED.search(text, start, call.start):
         return ""
     return read_branch(text, end + 1)
+
+
+def _find_branch_without(text: str, flag: str, position: int) -> str:
+    """Return the code that the function runs if a variable is false; empty if it gets another value before."""
+    end = text.find("\n}", position)
+    pattern = rf"\bif\s*\(\s*!\s*{flag}\s*\)|\b{flag}\s*=(?!=|\s*{flag}\b)"
+    match = re.compile(pattern).search(text, position, len(text) if end < 0 else end)
+    is_tested = match is not None and match[0].startswith("if") and not is_in_branch(text, match.start())
+    return read_branch(text, match.end()) if match is not None and is_tested else ""
 
 
 def find_table_names(text: str, expression: str, position: int) -> Iterator[TableName]:
