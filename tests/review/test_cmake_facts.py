@@ -478,3 +478,10 @@ ament_package()
         repository.commit({path: text.replace("THIS", name) for path, text in files.items()})
     result = compare(repository, "HEAD~1..HEAD")
     assert not any("linked" in sentence for found in result.subjects for sentence in sentences(found))
+
+
+def test_a_computed_number_is_no_setting(repository, compare):
+    text = 'project(arm)\nset(NAMES one two)\nmath(EXPR LAST "{} + 1")\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/CMakeLists.txt": text.format(1)})
+    repository.write({"arm/CMakeLists.txt": text.format(2)})
+    assert [str(change.sentence) for found in compare(repository).subjects for change in found.changes] == []

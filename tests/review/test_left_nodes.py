@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import breaking
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = "<package><name>lamp</name><version>1.0.0</version></package>\n"
 LAUNCH = """<launch>
@@ -125,3 +125,13 @@ def test_a_node_whose_file_spells_its_name_in_another_way(repository, compare, n
     found = [line for line in breaking(compare(repository)) if "gets no parameters" in line]
     text = f"node '{name}' gets no parameters from 'lamp/config/lamp.yaml', which has those of 'desk_lamp'"
     assert found == ([text] if is_found else [])
+
+
+def test_a_new_node_whose_file_spells_its_name_in_another_way_breaks_nothing(repository, compare):
+    path = "lamp/launch/a.launch.xml"
+    files = {"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": SETTINGS.format("desk_lamp")}
+    repository.commit({**files, path: f"<launch>\n{OTHER}</launch>\n"})
+    repository.write({path: LAUNCH.format(name="desk_lamb", more=OTHER)})
+    review = compare(repository)
+    assert [line for line in sentences(subject(review, path)) if "gets no parameters" in line]
+    assert breaking(review) == []

@@ -206,3 +206,28 @@ def test_materials_that_move_with_their_meshes_are_not_lost(repository, compare,
     repository.write({"a/meshes/arm.obj": None, "a/meshes/arm.mtl": None, **moved})
     told = "no longer installed: 'share/arm/meshes/arm.mtl'" in breaking(compare(repository))
     assert told is is_told
+
+
+@pytest.mark.parametrize(
+    ("named", "installed", "is_breaking"),
+    [
+        ("config/lamp.yaml", "launch", False),
+        ("maps/lamp.yaml", "launch", True),
+        ("maps/lamp.yaml", "launch maps", True),
+    ],
+    ids=["beside-another", "other-folder", "installed-folder"],
+)
+def test_a_file_beside_one_that_is_not_installed_either(repository, compare, named, installed, is_breaking):
+    cmake = "project(arm)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+    install = f"install(DIRECTORY {installed} DESTINATION share/${{PROJECT_NAME}})\n"
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    files = {"arm/package.xml": manifest.replace("<exec_dep", "<buildtool_depend>catkin</buildtool_depend><exec_dep")}
+    files |= {"arm/CMakeLists.txt": cmake + install, "arm/config/net.yaml": "a: 1", f"arm/{named}": "b: 2"}
+    node = '<launch><rosparam file="$(find arm)/{}" command="load"/>{}</launch>\n'
+    path = "arm/launch/arm.launch"
+    repository.commit({**files, path: node.format(named, "")})
+    repository.write({path: node.format(named, '<param name="net" value="$(find arm)/config/net.yaml"/>')})
+    lines = [str(change.sentence) for found in compare(repository).subjects for change in found.changes]
+    told = "names 'config/net.yaml' of 'arm', which is not installed"
+    assert told in lines
+    assert (told in breaking(compare(repository))) == is_breaking

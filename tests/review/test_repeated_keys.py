@@ -32,3 +32,19 @@ def test_a_repeated_key_whose_list_item_moves_is_not_new(repository, compare):
     lines = subject(compare(repository), PATH).changes
     assert lines
     assert not [change for change in lines if "is repeated in its mapping" in str(change.sentence)]
+
+
+@pytest.mark.parametrize(
+    ("new", "is_told"),
+    [
+        ("lamps:\n  upper:\n    bulb: 1\n    bulb: 2\n", False),
+        ("lamps:\n  upper:\n    color: 1\n    color: 2\n", True),
+        ("lamps:\n  left:\n    bulb: 1\n    bulb: 2\n  upper:\n    bulb: 1\n    bulb: 2\n", True),
+    ],
+    ids=["renamed-mapping", "other-key", "another-mapping"],
+)
+def test_a_repeated_key_of_a_renamed_mapping_is_not_new(repository, compare, new, is_told):
+    repository.commit({"p/package.xml": PACKAGE_XML, PATH: "lamps:\n  left:\n    bulb: 1\n    bulb: 2\n"})
+    repository.write({PATH: new})
+    lines = [str(change.sentence) for change in subject(compare(repository), PATH).changes]
+    assert any("is repeated in its mapping" in line for line in lines) == is_told

@@ -76,6 +76,21 @@ def test_an_undeclared_package_of_a_new_package_is_a_finding(repository, compare
     assert "LW813" in [finding.code for finding in result.new_findings]
 
 
+@pytest.mark.parametrize(
+    ("path", "text", "is_breaking"),
+    [
+        ("README.md", "Start dimmer.py by hand.\n", False),
+        ("lamp/setup.py", "import setuptools\nsetuptools.setup(scripts=['dimmer.py'])\n", True),
+        ("lamp/a.py", "import dimmer\n", True),
+        ("lamp/start.sh", "python3 dimmer.py\n", True),
+    ],
+)
+def test_an_added_script_that_nothing_starts_breaks_nothing(repository, compare, path, text, is_breaking):
+    repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "", path: text})
+    repository.write({"lamp/dimmer.py": "import serial\n"})
+    assert breaking(compare(repository)) == ["packages imported for the first time: 'serial'"] * is_breaking
+
+
 @pytest.mark.parametrize("name", ["requirements.txt", "Dockerfile", "install.sh"])
 def test_a_project_that_a_file_of_the_repository_installs(repository, compare, name):
     repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "", name: "pip install pyserial\n"})

@@ -65,6 +65,11 @@ _ROS_MODULES = frozenset(
 _LISTS = ("requirements", "dockerfile", "containerfile", "environment", "setup.", "pyproject", "pipfile", "install")
 """The beginnings of the names of other files that tell what to install."""
 _SCRIPT_SUFFIX = ".sh"
+_CALLER_SUFFIXES = (
+    *(".py", ".cfg", ".toml", ".launch", ".xml", ".yaml", ".yml", ".sh", ".bash", ".service", ".txt", ".cmake"),
+    *("Makefile", "Dockerfile"),
+)
+"""The endings of the names of files that can start, import or install a source."""
 _TOOLS = ("ament_", "catkin", "python", "rosidl_", "launch")
 """The beginnings of the names of dependencies that bring no other packages of nodes."""
 
@@ -74,15 +79,17 @@ def mark_undeclared(
 ) -> tuple[list[Subject], list[Diagnostic]]:
     """Return the subjects with breaking lines about undeclared packages, and the findings that no such line repeats.
 
-    A package that only the new version has is left out: nothing depends on it yet.
+    A package that only the new version has is left out: nothing depends on it yet. So is an added source in Python
+    that no other file names.
     """
     told: list[Diagnostic] = []
     result = []
     for subject in subjects:
-        if subject.new_path is None or not _is_in_old_package(versions, subject.new_path):
+        path = subject.new_path
+        if path is None or not _is_in_old_package(versions, path) or _is_new_script(versions, subject):
             result.append(subject)
             continue
-        own = [finding for finding in findings if _is_about(finding, subject.new_path)]
+        own = [finding for finding in findings if _is_about(finding, path)]
         marker = _Marker(versions.new, subject, own)
         changes = [marker.mark(change) for change in drop_told_lookups(subject.changes)]
         told += marker.told
@@ -248,6 +255,15 @@ def _read_lists(version: Version) -> str:
 def _is_in_old_package(versions: Versions, path: str) -> bool:
     folder = versions.new.package_of(path)
     return folder is not None and versions.old.file((PurePosixPath(folder) / MANIFEST).as_posix()).is_file()
+
+
+def _is_new_script(versions: Versions, subject: Subject) -> bool:
+    """Return whether a source in Python is new, and no other file of the repository imports, installs or starts it."""
+    path, new = subject.path, versions.new
+    if subject.old_path is not None or versions.old.file(path).is_file() or not is_python_source(path):
+        return False
+    word = re.compile(rf"(?<!\w){re.escape(PurePosixPath(path).stem)}(?!\w)")
+    return not any(word.search(new.text(other)) for other in new.paths(_CALLER_SUFFIXES) if other != path)
 
 
 def _is_about(finding: Diagnostic, path: str) -> bool:

@@ -86,8 +86,13 @@ def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> It
 
 
 def _find_unmatched_names(versions: Versions, old_path: str | None, new_path: str) -> Iterator[tuple[str, Change]]:
-    """Yield a change for each node whose parameter file newly spells its name in another way."""
+    """Yield a change for each node whose parameter file newly spells its name in another way.
+
+    It is breaking if the old launch file started the program, too.
+    """
     old = _read_unmatched_names(versions.old, old_path) if old_path else {}
+    outline = try_read_outline(versions.old, old_path) if old_path else None
+    programs = [] if outline is None else [entry.name for entry in list_nodes(outline)]
     for (name, path), (section, entry) in _read_unmatched_names(versions.new, new_path).items():
         if (name, path) not in old:
             text = phrase(
@@ -96,11 +101,12 @@ def _find_unmatched_names(versions: Versions, old_path: str | None, new_path: st
                 file=path,
                 section=section,
             )
+            location = Location(new_path, entry.span.line, entry.span.column)
+            if entry.name not in programs:
+                yield new_path, Change(text, location=location)
+                continue
             reason = phrase("the node '{name}' starts without these parameters", name=name)
-            yield (
-                new_path,
-                Change(text, Effect.BREAKING, reason, Location(new_path, entry.span.line, entry.span.column)),
-            )
+            yield new_path, Change(text, Effect.BREAKING, reason, location)
 
 
 def _read_unmatched_names(version: Version, path: str) -> dict[tuple[str, str], tuple[str, Entry]]:

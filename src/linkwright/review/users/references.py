@@ -68,8 +68,10 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
                 change = _explain_missing(versions.new, path, package, subpath, span)
                 if change is not None:
                     old_path = changed[path]  # an added file has no users yet
-                    is_harmless = old_path is None or _replaces_missing(
-                        versions.old, old_path, package, subpath, dropped
+                    is_harmless = (
+                        old_path is None
+                        or _replaces_missing(versions.old, old_path, package, subpath, dropped)
+                        or _is_beside_others(versions, path, package, subpath, known - dropped)
                     )
                     yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_harmless else change
 
@@ -105,6 +107,26 @@ def _replaces_missing(
         and _explain_missing(version, path, package, str(other), span) is not None
         for other_package, other in ((name, PurePosixPath(text)) for name, text in dropped)
     )
+
+
+def _is_beside_others(
+    versions: Versions, path: str, package: str, subpath: str, named: Collection[tuple[str, str]]
+) -> bool:
+    """Return whether a launch file of ROS 1 named other files of a folder that its package did not install either.
+
+    It only works with the source folder of the package, in which the new file is, too.
+
+    Args:
+        versions: both versions.
+        path: the path of the launch file.
+        package: the package of the new path.
+        subpath: the path in the package.
+        named: the packages and paths that both versions of the launch file name.
+    """
+    owner, folder = find_packages(versions.old).get(package), PurePosixPath(subpath).parent
+    others = [other for name, other in named if name == package and PurePosixPath(other).parent == folder]
+    is_source = owner is not None and owner.is_ros1 and not _is_missing(versions.new, package, subpath)
+    return is_source and any(_is_left_out(versions.old, owner, path, other) for other in others if owner is not None)
 
 
 def _may_make_files(text: str, path: str) -> bool:

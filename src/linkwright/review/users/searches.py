@@ -30,6 +30,7 @@ from linkwright.review.users.lost_description_arguments import (
 )
 from linkwright.review.users.lost_display_classes import find_lost_display_classes
 from linkwright.review.users.lost_displays import find_lost_displays
+from linkwright.review.users.lost_entry_points import find_lost_entry_points
 from linkwright.review.users.lost_installs import find_lost_installs, find_uninstalled_paths
 from linkwright.review.users.lost_interfaces import find_lost_interfaces
 from linkwright.review.users.lost_libraries import find_lost_libraries, find_unbuilt_libraries
@@ -81,4 +82,5 @@ SEARCHES: tuple[Search, ...] = (
     *(find_new_lookups, find_lost_joints, find_lost_states, find_lost_units, find_silent_scripts, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
     *(find_unknown_joints, find_new_keys, find_missing_headers, find_helper_failures, find_faulty_code),
+    find_lost_entry_points,
 )

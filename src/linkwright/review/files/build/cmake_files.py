@@ -552,7 +552,7 @@ _FACT_COMMANDS = frozenset(
         *("rosbuild_link_boost", "rosbuild_find_ros_package", "cuda_add_executable", "cuda_add_library"),
         *_ROS1_INTERFACE_COMMANDS,
         *("message", "project", "list", "unset", "install", "ament_package", "file", "string"),
-        "cmake_parse_arguments",
+        *("cmake_parse_arguments", "math"),
     }
 )
 """The commands that are compared as facts, or that do not affect users."""

@@ -7,11 +7,14 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.files.build.exports import exports_nothing
 from linkwright.review.files.build.facts import UNSHARED_PACKAGES, EnvironmentVariables
 from linkwright.review.renames.packages import PackageNames, find_renamed_packages
+from linkwright.review.versions import Version
 from linkwright.xmltree import Element
 
 _VERSION_SIGNS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
@@ -44,10 +47,11 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Report changed dependencies and conditions. Packages with the same change share a line."""
     names = PackageNames(find_renamed_packages(pair.versions))
     new_elements = _group_elements(new)
-    old_elements = {
+    old_elements: _Elements = {
         _Dependency(tag, names.translate_package(name)): elements
         for (tag, name), elements in _group_elements(old).items()
     }
+    old_elements = _correct_names(pair, old_elements, new_elements)
     is_private = exports_nothing(pair.versions.old, pair.old_path)
     is_moved = bool(find_lost_ros_versions(old, new))
     changes: dict[_DependencyChange, list[_Dependency]] = {}
@@ -73,6 +77,31 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         EnvironmentVariables(_find_condition_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
+
+
+def _correct_names(pair: FilePair, old: _Elements, new: _Elements) -> _Elements:
+    """Report the names with dashes that have underscores now, and return the old dependencies with the new names.
+
+    The build files already named the package with underscores, which the names of packages of ROS have.
+    """
+    old_names, new_names = (list(dict.fromkeys(key.package for key in elements)) for elements in (old, new))
+    spellings = {name.replace("_", "-"): name for name in new_names if name not in old_names}
+    corrected = {
+        name: spellings[name]
+        for name in old_names
+        if name not in new_names and name in spellings and _is_named(pair.versions.old, spellings[name])
+    }
+    for name, spelling in corrected.items():
+        keys = [key for key in new if key.package == spelling]
+        text = phrase("{tag}: {old} -> {new}", tag=_format_tags(keys), old=name, new=spelling)
+        pair.add(text, pair.location(new[keys[0]][0].span()))
+    return {key._replace(package=corrected.get(key.package, key.package)): elements for key, elements in old.items()}
+
+
+def _is_named(version: Version, package: str) -> bool:
+    """Return whether a manifest or build file of a version names a package."""
+    word = re.compile(rf"(?<![\w-]){re.escape(package)}(?![\w-])")
+    return any(word.search(version.text(path)) for path in version.paths((MANIFEST, CMAKE_FILE)))
 
 
 def find_lost_ros_versions(old: Manifest, new: Manifest) -> frozenset[int]:

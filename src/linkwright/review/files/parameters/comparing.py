@@ -46,6 +46,7 @@ from linkwright.review.files.parameters.plugin_packages import PluginPackages
 from linkwright.review.files.parameters.rearranged_nodes import arrange_like
 from linkwright.review.files.parameters.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.parameters.renamed_values import join_renamed_values
+from linkwright.review.files.parameters.renumbered_parts import report_renumbered_parts
 from linkwright.review.files.parameters.repeated_keys import report_repeated_keys
 from linkwright.review.files.parameters.replaced_classes import join_replaced_classes
 from linkwright.review.files.parameters.unpublished_topics import find_unpublished_reason
@@ -258,6 +259,7 @@ def _compare_values(
     if migrated:
         pair.changes.append(describe_migration(migrated, new, pair.new_path))
         old_values = {rename_migrated(name, migrated): value for name, value in old_values.items()}
+    old_values = report_renumbered_parts(pair, old_values, new)
     moveit = MoveItRules(old_values, new, pair.versions, pair.new_path)
     readers = KeyReaders(pair.versions, pair.new_path)
     old = _report_renamed(pair, old_values, new, moveit, readers)

@@ -23,12 +23,21 @@ def report_repeated_keys(pair: FilePair, old: yaml.Node | None, new: yaml.Node |
         old: the root node of the old version.
         new: the root node of the new version.
     """
-    known = {_drop_numbers(path) for path, _ in _list_repeated(old, "", set())}
+    known, found = ([_drop_numbers(path) for path, _ in _list_repeated(root, "", set())] for root in (old, new))
+    lost = [path for path in known if path not in found]
     for path, key in _list_repeated(new, "", set()):
-        if _drop_numbers(path) not in known:
+        text = _drop_numbers(path)
+        if text not in known and not any(_are_renamed(other, text) for other in lost):
             mark = key.start_mark
             text = phrase("key '{name}' is repeated in its mapping", name=path)
             pair.changes.append(Change(text, location=Location(pair.new_path, mark.line + 1, mark.column + 1)))
+
+
+def _are_renamed(old: str, new: str) -> bool:
+    """Return whether two paths of a key differ in one name of a mapping that contains it."""
+    names = [path.split(".") for path in (old, new)]
+    differing = [first != second for first, second in zip(*names, strict=False)]
+    return len(names[0]) == len(names[1]) and sum(differing) == 1 and not differing[-1]
 
 
 def _drop_numbers(path: str) -> str:

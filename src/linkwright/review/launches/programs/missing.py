@@ -49,7 +49,17 @@ _FILE_FINDING = "LW842"
 """The finding about a file that a launch file names and that does not exist."""
 MISSING_FILE = "names '{file}' of '{package}', which does not exist"
 """The sentence about such a file."""
-_FINDINGS = {**dict.fromkeys(_STARTS, _FINDING), MISSING_FILE: _FILE_FINDING}
+_LOST_ENTRY_POINTS = (
+    "executable '{name}': its module '{module}' was removed",
+    "executable '{name}': its function '{function}' was removed",
+)
+_ENTRY_POINT_FINDING = "LW827"
+"""The finding about an executable whose module or function does not exist."""
+_FINDINGS = {
+    **dict.fromkeys(_STARTS, _FINDING),
+    **dict.fromkeys(_LOST_ENTRY_POINTS, _ENTRY_POINT_FINDING),
+    MISSING_FILE: _FILE_FINDING,
+}
 """The finding about the same problem, by the sentence of the change."""
 _COMMENT = re.compile(r"#[^\n]*")
 _COMPUTED_NAME = re.compile(
@@ -308,7 +318,7 @@ def _find_named_packages(entry: Entry) -> Iterator[str]:
 
 
 def drop_told_findings(subjects: Sequence[Subject], findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings without those about programs and files that a breaking line of the same launch file names."""
+    """Return the findings without those about programs and files that a breaking line of the same file names."""
     told = {
         (subject.path, _FINDINGS[change.sentence.template], change.sentence.arguments.get(_get_key(change.sentence)))
         for subject in subjects
@@ -324,7 +334,7 @@ def _get_key(sentence: Phrase) -> str:
 
 
 def _get_missing(finding: Diagnostic) -> tuple[str, str, object]:
-    """Return the launch file, the code, and the name of the program or file of a finding."""
+    """Return the file, the code, and the name of the program or file of a finding."""
     arguments = getattr(finding.message, "arguments", {})
     path = "" if finding.span is None else finding.span.file
     return path, finding.code, arguments.get("path" if finding.code == _FILE_FINDING else "executable")
