@@ -190,3 +190,69 @@ def test_a_transform_that_moves_to_two_files_has_its_new_values(repository, comp
     assert str(lost.reason).startswith(f"where the file is started without {paths[1]} or {paths[2]}, the transform")
     assert sentences(subject(result, paths[1])) == [f"{title} from {paths[0]}"]
     assert sentences(subject(result, paths[2])) == [f"{title} from {paths[0]}; x 1 -> 3"]
+
+
+BROADCASTER = """import rclpy
+from geometry_msgs.msg import TransformStamped
+from tf2_ros import TransformBroadcaster
+
+
+def main():
+    node = rclpy.create_node("place")
+    transform = TransformStamped()
+    transform.header.frame_id = "hand"
+    transform.child_frame_id = "tool"
+    TransformBroadcaster(node).sendTransform(transform)
+"""
+SILENT = "def main():\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    ("node", "old", "new", "may_publish"),
+    [
+        ("place.py", SILENT, BROADCASTER, True),
+        ("place.py", SILENT, BROADCASTER.replace("tool", "finger"), False),
+        ("place.py", SILENT, BROADCASTER.replace("TransformBroadcaster", "OdometryPublisher"), False),
+        ("place.py", SILENT, f'{BROADCASTER}    node.declare_parameter("publish_tf", False)\n', False),
+        ("place.py", BROADCASTER, f"{BROADCASTER}    rclpy.spin(node)\n", False),
+        ("other.py", SILENT, BROADCASTER, False),
+    ],
+)
+def test_node_whose_source_newly_broadcasts_a_frame_may_publish_its_transform(
+    repository, compare, node, old, new, may_publish
+):
+    started = f'<node pkg="arm" type="{node}" name="place"/>'
+    static = STATIC.replace("PARENT", "hand").replace("CHILD", "tool")
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/other.py": SILENT}
+    launch = {"arm/launch/arm.launch": f"<launch>{static}{started}</launch>"}
+    repository.commit({**files, **launch, "arm/scripts/place.py": old})
+    repository.write({"arm/launch/arm.launch": f"<launch>{started}</launch>", "arm/scripts/place.py": new})
+    (removed,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (removed.reason is None) is may_publish
+    assert str(removed.sentence).endswith(f"; node 'arm/{node}' may publish its transform") is may_publish
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "may_publish"),
+    [("false", "true", True), ("true", "true", False), ("true", "false", False), (None, "true", True)],
+)
+@pytest.mark.parametrize("is_file", [True, False])
+def test_node_whose_parameters_newly_turn_a_transform_on_may_publish_it(
+    repository, compare, old, new, may_publish, is_file
+):
+    static = STATIC.replace("PARENT", "hand").replace("CHILD", "tool")
+    frames = {"parent": "hand", "child": "tool"}
+
+    def make_files(value: str | None, transform: str) -> dict[str, str]:
+        values = {**frames, **({} if value is None else {"publish_tf": value})}
+        parameters = "".join(f'<param name="{key}" value="{text}"/>' for key, text in values.items())
+        load = '<rosparam command="load" file="$(find arm)/place.yaml"/>'
+        node = f'<node pkg="drive" type="drive" name="drive">{load if is_file else parameters}</node>'
+        yaml = "".join(f"{key}: {text}\n" for key, text in values.items())
+        return {"arm/launch/arm.launch": f"<launch>{transform}{node}</launch>", "arm/place.yaml": yaml}
+
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), **make_files(old, static)})
+    repository.write(make_files(new, ""))
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    (removed,) = [change for change in changes if "static_transform_publisher" in str(change.sentence)]
+    assert (removed.reason is None) is may_publish

@@ -107,6 +107,44 @@ def test_launch_files_of_tests_are_not_breaking_in_ros_1_either(repository, comp
     assert bool(breaking(compare(repository))) is bool(install)
 
 
+@pytest.mark.parametrize(
+    ("files", "path", "is_breaking"),
+    [
+        ({}, "test/launch/arm.launch.xml", False),
+        ({}, "launch/arm.launch.xml", True),
+        ({"manifest.xml": "<package/>"}, "test/launch/arm.launch.xml", True),
+        ({"tests/arm/package.xml": "arm_checks"}, "tests/arm/launch/arm.launch.xml", False),
+        ({"tests/package.xml": "arm_checks"}, "tests/launch/arm.launch.xml", True),
+        (
+            {"tests/arm/package.xml": "arm_checks", "README.md": "ros2 launch arm_checks"},
+            "tests/arm/launch/arm.launch.xml",
+            True,
+        ),
+        (
+            {"tests/arm/package.xml": "arm_checks", "tests/README.md": "Start arm_checks."},
+            "tests/arm/launch/arm.launch.xml",
+            False,
+        ),
+        ({"tests/arm/package.xml": "arm_checks", "b/package.xml": "b"}, "tests/arm/launch/arm.launch.xml", False),
+        (
+            {
+                "tests/arm/package.xml": "arm_checks",
+                "b/package.xml": "b",
+                "b/launch/b.launch.xml": "$(find-pkg-share arm_checks)",
+            },
+            "tests/arm/launch/arm.launch.xml",
+            True,
+        ),
+    ],
+)
+def test_launch_files_of_test_packages_and_without_package_break_nothing(repository, compare, files, path, is_breaking):
+    manifests = {name: PACKAGE_XML.replace("arm_description", text) for name, text in files.items() if "/p" in name}
+    launch = '<launch><node pkg="amcl" exec="amcl" name="amcl"/></launch>\n'
+    repository.commit({**files, **manifests, path: launch})
+    repository.write({path: "<launch/>\n"})
+    assert bool(breaking(compare(repository))) is is_breaking
+
+
 GAINS = {"/**": ["rho: 1.2", "p: 2.0", "i: 0.1", "d: 0.01", "limit: 5"]}
 SPLIT = {"/**": ["rho: 1.2"], "/pilot": ["p: 2.0", "i: 0.1", "d: 0.02", "limit: 5"]}
 

@@ -29,6 +29,9 @@ CMAKE_PATH = "arm_msgs/CMakeLists.txt"
         (CMAKE.format("# srv/Move.srv", ""), False),
         (CMAKE.format("", "srv/Move.srv"), True),
         (CMAKE.format("file(GLOB services srv/*.srv)", "${services}"), True),
+        (CMAKE.format('file(GLOB_RECURSE found RELATIVE ${DIR} "srv/M*")', ""), True),
+        (CMAKE.format("file(GLOB found ${PATTERN})", ""), True),
+        (CMAKE.format("file(GLOB launch_files launch/*.py)", ""), False),
         (CMAKE.format("my_services(Move)", ""), True),
         (CMAKE.replace("rosidl_generate_interfaces", "my_interfaces").format("", ""), True),
         (CMAKE.format("add_service_files()", ""), True),
@@ -71,6 +74,10 @@ def test_added_interface_that_cannot_be_read_breaks_the_build_if_it_is_built(rep
 @pytest.mark.parametrize(
     ("command", "is_built"),
     [
+        ('message(STATUS "arm")\ninclude(GNUInstallDirs)\nament_export_interfaces(arm)', False),
+        ("generate_messages(DEPENDENCIES std_msgs)", False),
+        ("add_message_files()\ngenerate_messages(DEPENDENCIES std_msgs)", True),
+        ("include(ArmTypes)", True),
         ("# rosidl_generate_interfaces(${PROJECT_NAME} srv/Move.srv)", False),
         ("my_generate_interfaces()", True),
         ("include(cmake/types.cmake)", True),
@@ -99,3 +106,56 @@ def test_removed_interface_that_was_never_built_breaks_nothing(repository, compa
     result = compare(repository)
     assert sentences(subject(result, PATH)) == [expected]
     assert breaking(result) == ([expected] if is_breaking else [])
+
+
+def test_interface_that_a_build_file_of_a_subfolder_may_build_is_in_use(repository, compare):
+    files = {CMAKE_PATH: "project(arm_msgs)\nadd_subdirectory(srv)\n", "arm_msgs/srv/CMakeLists.txt": "my_services()\n"}
+    repository.commit({**FILES, **files, PATH: "float64 x\n---\n"})
+    repository.write({PATH: "float64 y\n---\n"})
+    assert breaking(compare(repository)) == ["field 'request x' renamed to 'request y'"]
+
+
+@pytest.mark.parametrize(
+    ("files", "is_breaking"),
+    [
+        ({}, False),
+        ({"setup.py": "generate_types()\n"}, True),
+        ({"setup.py": ""}, True),
+        ({"arm_msgs/types.py": "TYPES = load('srv/Move.srv')\n"}, True),
+        ({"srv/CMakeLists.txt": "project(services)\n"}, True),
+    ],
+)
+def test_package_of_python_builds_no_interfaces(repository, compare, files, is_breaking):
+    manifest = PACKAGE_XML.replace("arm_description", "arm_msgs").replace("ament_cmake", "ament_python")
+    files = {"package.xml": manifest, "setup.py": "from setuptools import setup\nsetup(name='arm_msgs')\n", **files}
+    repository.commit({**{f"arm_msgs/{path}": text for path, text in files.items()}, PATH: "float64 x\n---\n"})
+    repository.write({PATH: "float64 y\n---\n"})
+    fields = ["field 'request x' renamed to 'request y'"]
+    assert breaking(compare(repository)) == (fields if is_breaking else [])
+
+
+@pytest.mark.parametrize("listed", ["", "srv/Move.srv"])
+def test_use_of_an_interface_that_was_never_built_did_not_work_before(repository, compare, listed):
+    user = {"arm/node.py": "from arm_msgs.srv import Move\n"}
+    repository.commit({**FILES, **user, CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\n"})
+    repository.git("rm", "-q", PATH)
+    repository.write({CMAKE_PATH: CMAKE.format("", "")})
+    expected = ["uses the interface 'arm_msgs/Move', which no longer exists", "interface removed: request: float64 x"]
+    assert breaking(compare(repository)) == (expected if listed else [])
+
+
+@pytest.mark.parametrize("listed", ["", "srv/Move.srv"])
+def test_interface_that_can_no_longer_be_read_fails_only_if_it_is_built(repository, compare, listed):
+    repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", ""), PATH: "float64 x\n---\n"})
+    repository.write({CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\narm_msgs/State\n"})
+    assert [text[:23] for text in breaking(compare(repository))] == (["can no longer be read: "] if listed else [])
+
+
+def test_removed_interface_of_a_package_without_build_file_is_told_with_it(repository, compare):
+    manifest = PACKAGE_XML.replace("arm_description", "arm_msgs").replace("ament_cmake", "ament_python")
+    setup = "from setuptools import setup\nsetup(name='arm_msgs')\n"
+    repository.commit({"arm_msgs/package.xml": manifest, "arm_msgs/setup.py": setup, PATH: "float64 x\n---\n"})
+    repository.git("rm", "-q", PATH)
+    assert sentences(subject(compare(repository), PATH)) == [
+        "interface removed: request: float64 x; the package has no CMakeLists.txt"
+    ]

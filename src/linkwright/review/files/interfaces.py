@@ -17,6 +17,7 @@ from linkwright.packages.manifest import ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.containing_interfaces import find_containing_interfaces
 from linkwright.review.files.renamed_fields import find_renamed_constants, find_renamed_fields
@@ -52,7 +53,8 @@ def compare_interfaces(pair: FilePair) -> None:
         _report_ros1_types(pair, *definitions)
     _name_containing_interfaces(pair)
     was_unbuilt = is_unbuilt(pair.versions.old, pair.old_path)
-    if not pair.is_lost and (is_foreign or was_unbuilt):
+    is_still_unbuilt = was_unbuilt and is_unbuilt(pair.versions.new, pair.new_path)
+    if is_still_unbuilt or (not pair.is_lost and (is_foreign or was_unbuilt)):
         pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
     if pair.old_path != pair.new_path and not was_unbuilt and is_unbuilt(pair.versions.new, pair.new_path):
         pair.add(phrase("CMakeLists.txt does not build it"), Location(pair.new_path, 1, 1), _make_use_reason())
@@ -146,9 +148,12 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     contents = joined(texts, ", " if is_idl else "; ") if texts else None
     if not is_unbuilt(version, path):
         return contents
-    unbuilt = (
-        phrase("CMakeLists.txt did not build it") if version.is_old else phrase("CMakeLists.txt does not build it")
-    )
+    if not version.file(f"{version.package_of(path)}/{CMAKE_FILE}".lstrip("/")).is_file():
+        unbuilt = phrase("the package has no CMakeLists.txt")
+    elif version.is_old:
+        unbuilt = phrase("CMakeLists.txt did not build it")
+    else:
+        unbuilt = phrase("CMakeLists.txt does not build it")
     return unbuilt if contents is None else joined([contents, unbuilt], "; ")
 
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
+from functools import partial
+from itertools import pairwise
 
 from linkwright.review.caching import cached_in_review
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import IncludedActions, find_including_files
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
-from linkwright.review.launches.programs.sources import try_read_outline
+from linkwright.review.launches.programs.sources import SourcePrograms, try_read_outline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names
+from linkwright.review.sources.broadcasters import find_new_broadcasters
 from linkwright.review.texts.list_changes import split_command
 from linkwright.review.versions import Version, Versions
 
@@ -35,13 +38,16 @@ _LINK = re.compile(r"<link\s+name=[\"']([^\"']+)[\"']")
 _SUBSTITUTION = re.compile(r"\$[{(][^{}()]*[)}]")
 _FRAME_WORD = re.compile(r"[\w/.-]+")
 _PARENT_FRAME = "--frame-id"
+_SWITCH = re.compile(r"(publish|broadcast|enable)_(odom_|map_)?(tf|transform)")
 
 
 def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, versions: Versions) -> Entry | None:
-    """Return an added node or include that may publish the transform of a removed publisher, or None.
+    """Return a node or include that newly may publish the transform of a removed publisher, or None.
 
-    A node may publish it if its program publishes static transforms, or if its parameters name both frames. An included
-    file of another repository may publish it if it starts a localization, or if it gets the name of the frame.
+    An added node may publish it if its program publishes static transforms, or if its parameters name both frames. A
+    node that was there before may do so if its source newly broadcasts the frame, or if its parameters, which name both
+    frames, newly turn the transform on. An included file of another repository may publish it if it starts a
+    localization, or if it gets the name of the frame.
 
     Args:
         transform: the removed static transform publisher.
@@ -54,10 +60,20 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
         return None
     are_localized = all(map(_LOCALIZATION_FRAME.fullmatch, frames))
     old_names = {entry.name for entry in old.entries if entry.kind in ("node", "include")}
+    list_old_switches = partial(_list_switches, outline=old, version=versions.old)
+    sources = [SourcePrograms(versions.new, path) for path in find_new_broadcasters(versions, frames)]
     for entry in new.entries:
-        if entry.kind not in ("node", "include") or entry.name in old_names:
+        if entry.kind not in ("node", "include"):
             continue
         if evaluate_condition(new.resolve(entry.settings.get(CONDITION, ""))) is False:
+            continue
+        if entry.kind == "node" and any(source.runs(entry.name) for source in sources):
+            return entry
+        if entry.name in old_names:
+            before = {name for node in old.entries if node.name == entry.name for name in list_old_switches(node)}
+            is_on = entry.kind == "node" and not before.issuperset(_list_switches(entry, new, versions.new))
+            if is_on and frames <= set(_find_parameter_words(entry, new, versions.new)):
+                return entry
             continue
         if entry.kind == "include":
             is_localization = are_localized and _LOCALIZATION_FILE.search(entry.name) is not None
@@ -74,6 +90,14 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
         ):
             return entry
     return _find_added_robot(frames, versions)
+
+
+def _list_switches(node: Entry, outline: LaunchOutline, version: Version) -> set[str]:
+    """Return the parameters of a node that turn on a transform, such as ``publish_tf``."""
+    words = list(_find_parameter_words(node, outline, version))
+    settings = ((name.removeprefix("parameter "), outline.resolve(value)) for name, value in node.settings.items())
+    pairs = (*settings, *pairwise(words))
+    return {name for name, value in pairs if _SWITCH.fullmatch(name) and value.lower() == "true"}
 
 
 def _is_absent(include: Entry, version: Version) -> bool:

@@ -13,6 +13,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build.cmake_files import CMAKE_FILE
 from linkwright.review.files.build.facts import FactKind
+from linkwright.review.files.build.unbuilt_interfaces import is_unbuilt
 from linkwright.review.files.interfaces import read_structures
 from linkwright.review.launches.programs.missing import find_packages
 from linkwright.review.sources.headers.lost_types import find_including_files
@@ -88,8 +89,8 @@ def _make_change(path: str, use: InterfaceUse) -> Change:
 
 
 def _find_lost(versions: Versions, file: ChangedFile) -> LostInterface | None:
-    """Return what an interface lost; None if it lost nothing or its package was removed."""
-    if file.old_path is None:
+    """Return what an interface lost; None if it lost nothing, was not built, or its package was removed."""
+    if file.old_path is None or is_unbuilt(versions.old, file.old_path):
         return None
     package = find_package(versions.old, file.old_path)
     old_path = PurePosixPath(file.old_path)

@@ -6,23 +6,46 @@ import re
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build.cmake_branches import iterate_conditional_commands
 from linkwright.review.installed_paths import find_installed_paths, find_targets
 from linkwright.review.users.installed_readers import READER_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _TEST_CONDITION = re.compile(r"(?<!NOT )\b(?:BUILD_TESTING|CATKIN_ENABLE_TESTING)\b")
+_USERS = (*READER_SUFFIXES, ".md", ".rst", "Dockerfile")
+"""The ends of the names of files that may start a package, or tell users to do so."""
 
 
 def is_test_file(version: Version, path: str) -> bool:
-    """Return whether a file belongs to tests and is certainly not installed, or only if tests are built."""
-    package = version.package_of(path)
-    if package is None or TEST_FOLDERS.isdisjoint(PurePosixPath(path).relative_to(package).parts):
+    """Return whether a file belongs to tests and is certainly not installed, or only if tests are built.
+
+    Nothing installs a file without a package. A package in a folder of tests, which installs its files, must have no
+    users outside of such folders.
+    """
+    package = version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
+    if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
+        return False
+    if package is None:
+        return True
+    if not TEST_FOLDERS.isdisjoint(PurePosixPath(package).parts[:-1]):
+        return not _has_users_outside_of_tests(version, package)
+    if TEST_FOLDERS.isdisjoint(PurePosixPath(path).relative_to(package).parts):
         return False
     relative_path = PurePosixPath(path).relative_to(package)
     return find_targets(version, package, path) == frozenset() or _is_installed_for_tests(
         version, package, relative_path
     )
+
+
+@cached_in_review(maxsize=64)
+def _has_users_outside_of_tests(version: Version, package: str) -> bool:
+    """Return whether a file outside of the folders of tests has the name of a package."""
+    folder = PurePosixPath(package)
+    name = re.compile(rf"(?<![\w.-]){re.escape(package_name(version.file(package)) or folder.name)}(?![\w-])")
+    readers = (path for path in version.paths(_USERS) if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts))
+    return any(name.search(version.text(reader)) for reader in readers)
 
 
 def _is_installed_for_tests(version: Version, package: str, path: PurePosixPath) -> bool:
