@@ -96,6 +96,28 @@ def test_file_that_may_exist_is_not_told(repository, compare, changes):
     assert breaking(compare(repository)) == []
 
 
+@pytest.mark.parametrize(
+    ("command", "may_make"),
+    [
+        ('install(CODE "execute_process(COMMAND chmod +x ${CMAKE_INSTALL_PREFIX}/lib/arm/run)")', False),
+        ('install(CODE "execute_process(COMMAND \\"/usr/bin/python3\\" -m compileall \\"${FOLDER}\\")")', False),
+        ("execute_process(COMMAND git -C ${FOLDER} rev-parse --short HEAD OUTPUT_VARIABLE revision)", False),
+        ('execute_process(COMMAND ${PYTHON} -c "import numpy; print(numpy.get_include())" OUTPUT_VARIABLE a)', False),
+        ('execute_process(COMMAND ${PYTHON} -c "import numpy; print(make_files()); save()")', True),
+        ("execute_process(COMMAND git archive HEAD)", True),
+        ("execute_process(COMMAND date OUTPUT_FILE ${FILE})", True),
+        ("execute_process(COMMAND date COMMAND scripts/make_files.sh)", True),
+        ("execute_process(COMMAND date)\nexecute_process(COMMAND scripts/make_files.sh)", True),
+        ('install(CODE "execute_process(COMMAND scripts/make_files.sh)")', True),
+    ],
+)
+def test_process_that_only_tells_a_fact_makes_no_missing_file(repository, compare, command, may_make):
+    repository.commit({**FILES, "arm/CMakeLists.txt": f"{CMAKE}{command}\n", "arm/launch/arm.launch.xml": XML})
+    repository.write({"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "robot.yaml")})
+    told = ["names 'config/robot.yaml' of 'arm', which does not exist"]
+    assert breaking(compare(repository)) == ([] if may_make else told)
+
+
 LEFT_OUT = CMAKE.replace("launch config", "launch")
 CATKIN = """<package format="2"><name>arm</name><version>1.0.0</version>
   <buildtool_depend>catkin</buildtool_depend></package>
