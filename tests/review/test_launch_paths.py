@@ -96,6 +96,28 @@ def test_file_that_may_exist_is_not_told(repository, compare, changes):
     assert breaking(compare(repository)) == []
 
 
+@pytest.mark.parametrize(
+    ("command", "may_make"),
+    [
+        ('install(CODE "execute_process(COMMAND chmod +x ${CMAKE_INSTALL_PREFIX}/lib/arm/run)")', False),
+        ('install(CODE "execute_process(COMMAND \\"/usr/bin/python3\\" -m compileall \\"${FOLDER}\\")")', False),
+        ("execute_process(COMMAND git -C ${FOLDER} rev-parse --short HEAD OUTPUT_VARIABLE revision)", False),
+        ('execute_process(COMMAND ${PYTHON} -c "import numpy; print(numpy.get_include())" OUTPUT_VARIABLE a)', False),
+        ('execute_process(COMMAND ${PYTHON} -c "import numpy; print(make_files()); save()")', True),
+        ("execute_process(COMMAND git archive HEAD)", True),
+        ("execute_process(COMMAND date OUTPUT_FILE ${FILE})", True),
+        ("execute_process(COMMAND date COMMAND scripts/make_files.sh)", True),
+        ("execute_process(COMMAND date)\nexecute_process(COMMAND scripts/make_files.sh)", True),
+        ('install(CODE "execute_process(COMMAND scripts/make_files.sh)")', True),
+    ],
+)
+def test_process_that_only_tells_a_fact_makes_no_missing_file(repository, compare, command, may_make):
+    repository.commit({**FILES, "arm/CMakeLists.txt": f"{CMAKE}{command}\n", "arm/launch/arm.launch.xml": XML})
+    repository.write({"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "robot.yaml")})
+    told = ["names 'config/robot.yaml' of 'arm', which does not exist"]
+    assert breaking(compare(repository)) == ([] if may_make else told)
+
+
 LEFT_OUT = CMAKE.replace("launch config", "launch")
 CATKIN = """<package format="2"><name>arm</name><version>1.0.0</version>
   <buildtool_depend>catkin</buildtool_depend></package>
@@ -216,3 +238,106 @@ def test_the_root_element_tells_whether_a_file_is_a_launch_file(repository, comp
     result = compare(repository)
     assert [found.path for found in result.subjects] == ([path] if is_told else [])
     assert list(result.other_files) == ([] if is_told else [path])
+
+
+JOYSTICKS = {
+    "arm.launch.xml": """<launch>
+<arg name="use_joy" default="false"/>
+<node pkg="joy" exec="joy" if="$(var use_joy)"><param from="$(find-pkg-share arm)/config/joy.yaml"/></node>
+</launch>
+""",
+    "arm.launch": """<launch>
+<arg name="use_joy" default="false"/>
+<group if="$(arg use_joy)">
+<node name="joy" pkg="joy" type="joy"><rosparam file="$(find arm)/config/joy.yaml"/></node>
+</group>
+</launch>
+""",
+    "arm.launch.py": """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    file = PathJoinSubstitution([FindPackageShare("arm"), "config", "joy.yaml"])
+    condition = IfCondition(LaunchConfiguration("use_joy"))
+    return LaunchDescription([
+        DeclareLaunchArgument("use_joy", default_value="false"),
+        Node(package="joy", executable="joy", parameters=[file], condition=condition),
+    ])
+""",
+}
+NO_JOYSTICKS = {
+    "arm.launch.xml": "<launch/>\n",
+    "arm.launch": "<launch/>\n",
+    "arm.launch.py": "from launch import LaunchDescription\n\n\n"
+    "def generate_launch_description():\n    return LaunchDescription([])\n",
+}
+MISSING = "names 'config/joy.yaml' of 'arm', which does not exist"
+
+
+def review_joystick(repository, compare, name, new_text, old_text=None, others=None):
+    old_text = NO_JOYSTICKS[name] if old_text is None else old_text
+    repository.commit({**FILES, **(others or {}), f"arm/launch/{name}": old_text})
+    repository.write({f"arm/launch/{name}": new_text})
+    return compare(repository)
+
+
+@pytest.mark.parametrize("name", JOYSTICKS)
+def test_missing_file_of_an_added_node_that_a_new_argument_switches_off_is_not_breaking(repository, compare, name):
+    result = review_joystick(repository, compare, name, JOYSTICKS[name])
+    assert MISSING in sentences(subject(result, f"arm/launch/{name}"))
+    assert MISSING not in breaking(result)
+
+
+@pytest.mark.parametrize("name", JOYSTICKS)
+def test_missing_file_of_a_node_that_starts_by_default_is_breaking(repository, compare, name):
+    result = review_joystick(repository, compare, name, JOYSTICKS[name].replace("false", "true"))
+    assert MISSING in breaking(result)
+
+
+@pytest.mark.parametrize("name", JOYSTICKS)
+def test_missing_file_of_a_node_that_an_old_argument_switches_off_is_breaking(repository, compare, name):
+    lines = JOYSTICKS[name].splitlines(keepends=True)
+    old_text = "".join(line for line in lines if not any(word in line for word in ("<node", "Node(", "file = ")))
+    result = review_joystick(repository, compare, name, JOYSTICKS[name], old_text)
+    assert MISSING in breaking(result)  # users start the file with this argument
+
+
+@pytest.mark.parametrize("name", JOYSTICKS)
+def test_missing_file_of_a_node_of_the_old_version_is_breaking(repository, compare, name):
+    old_text = JOYSTICKS[name].replace("use_joy", "joystick").replace("joy.yaml", "arm.yaml")
+    result = review_joystick(repository, compare, name, JOYSTICKS[name], old_text)
+    assert MISSING in breaking(result)
+
+
+@pytest.mark.parametrize("name", JOYSTICKS)
+def test_missing_file_of_a_node_that_another_launch_file_switches_on_is_breaking(repository, compare, name):
+    include = f'<include file="$(find-pkg-share arm)/launch/{name}"><arg name="use_joy" value="1"/></include>'
+    caller = f"<launch>{include}</launch>\n"
+    others = {"arm/launch/all.launch.xml": caller}
+    assert MISSING in breaking(review_joystick(repository, compare, name, JOYSTICKS[name], others=others))
+
+
+def test_missing_file_that_a_python_file_reads_in_any_case_is_breaking(repository, compare):
+    text = JOYSTICKS["arm.launch.py"].replace("[file]", "[yaml.safe_load(open(file))]").replace(
+        'PathJoinSubstitution([FindPackageShare("arm"), "config", "joy.yaml"])',
+        'os.path.join(get_package_share_directory("arm"), "config", "joy.yaml")',
+    )  # fmt: skip
+    assert MISSING in breaking(review_joystick(repository, compare, "arm.launch.py", text))
+
+
+def test_missing_file_that_an_included_file_can_use_is_breaking(repository, compare):
+    text = """<launch>
+<arg name="joy_file" default="$(find-pkg-share arm)/config/joy.yaml"/>
+<arg name="use_joy" default="false"/>
+<node pkg="joy" exec="joy" if="$(var use_joy)"><param from="$(var joy_file)"/></node>
+</launch>
+"""
+    name = "arm.launch.xml"
+    assert MISSING not in breaking(review_joystick(repository, compare, name, text))
+    text = text.replace("</launch>", '<include file="$(find-pkg-share other)/launch/other.launch.xml"/></launch>')
+    assert MISSING in breaking(review_joystick(repository, compare, name, text))

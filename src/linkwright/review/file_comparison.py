@@ -23,6 +23,7 @@ from linkwright.review.installed_paths import (
     keeps_type,
 )
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
+from linkwright.review.launches.python.imports import find_failing_imports
 from linkwright.review.launches.python.undefined import find_undefined_names
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names
@@ -138,7 +139,7 @@ def _describe_unpaired_file(
             text = _add_contents(rule, text, version, path)
         changes, images = _describe_contents(version, kind, path, drawings)
         if kind is SubjectKind.LAUNCH_FILE and new_path is not None:
-            changes += find_undefined_names(version, path)
+            changes += [*find_undefined_names(version, path), *find_failing_imports(versions, path)]
         elif kind is SubjectKind.INTERFACE and new_path is not None:
             changes += find_syntax_errors(version, path)
         problems += [] if new_path is None else _find_unreadable(version, kind, path, text, changes)

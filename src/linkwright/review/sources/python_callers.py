@@ -13,7 +13,9 @@ from linkwright.diagnostics import Phrase, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.sources.python.methods import is_defined_by_others
 from linkwright.review.sources.python.objects import FailingUse, KnownClass, find_failing_uses, read_classes
+from linkwright.review.sources.python.own_calls import find_own_calls, read_methods
 from linkwright.review.sources.python.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python.signatures import Signature, count_returned, read_signature
 from linkwright.review.sources.python.undefined_names import find_bound_names
@@ -38,13 +40,15 @@ class _Module:
         signatures: the parameters of these functions and classes, if these are certain.
         is_complete: whether the module certainly has no other names.
         counts: the numbers of values that functions return, if these are certain.
+        methods: the parameters of methods, as ``Class.method``, if these are certain.
     """
 
     names: frozenset[str]
     defined: frozenset[str]
-    signatures: Mapping[str, Signature]
+    signatures: dict[str, Signature]
     is_complete: bool
     counts: Mapping[str, int]
+    methods: dict[str, Signature]
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,8 @@ def find_broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]
     class of their object is certain.
     """
     yield from _find_failing_uses(versions, changed_files)
+    for file in changed_files:
+        yield from ((file.path, change) for change in _find_own_failures(versions, file))
     lost = [module for file in changed_files if (module := _find_lost(versions, file)) is not None]
     if not lost:
         return
@@ -162,6 +168,38 @@ def _find_lost(versions: Versions, file: ChangedFile) -> _LostNames | None:
     return _LostNames(path, removed, changed, counts=counts) if removed or changed or counts else None
 
 
+def _find_own_failures(versions: Versions, file: ChangedFile) -> Iterator[Change]:
+    """Yield the calls by which a changed module uses its own functions and methods with their old arguments."""
+    path = file.new_path
+    if path is None or not path.endswith(PYTHON_SUFFIX) or file.old_path is None or file.is_submodule:
+        return
+    old, new, tree = (
+        _read_module(versions.old, file.old_path),
+        _read_module(versions.new, path),
+        _parse(versions.new, path),
+    )
+    if old is None or new is None or tree is None:
+        return
+    before, after = old.signatures | old.methods, new.signatures | new.methods
+    changed = [name for name in before if name in after and before[name].text != after[name].text]
+    for name, call in sorted(find_own_calls(tree, changed), key=lambda item: item[1].lineno):
+        class_name, _, method = name.rpartition(".")
+        is_replaced = bool(class_name) and is_defined_by_others(versions.new, path, class_name, method)
+        if before[name].fits(call) and not after[name].fits(call) and not is_replaced:
+            yield _make_call_change(path, path, name, after[name], call)
+
+
+def _make_call_change(path: str, module: str, name: str, signature: Signature, call: ast.Call) -> Change:
+    """Return the change that a file calls a function of a module with the old arguments."""
+    text = phrase(
+        "calls '{name}' of '{file}' with the old arguments; the new ones are {arguments}",
+        name=name,
+        file=module,
+        arguments=signature.text,
+    )
+    return Change(text, Effect.BREAKING, phrase("the call fails"), Location(path, call.lineno, call.col_offset + 1))
+
+
 def _get_module_word(path: str) -> str:
     pure_path = PurePosixPath(path)
     return pure_path.parent.name if pure_path.name == PACKAGE_FILE else pure_path.stem
@@ -197,7 +235,8 @@ def _read_module(version: Version, path: str) -> _Module | None:
         for node in definitions
         if isinstance(node, ast.FunctionDef) and node.name in signatures and (count := count_returned(node)) is not None
     }
-    return _Module(frozenset(bound), frozenset(node.name for node in definitions), signatures, not is_dynamic, counts)
+    defined = frozenset(node.name for node in definitions)
+    return _Module(frozenset(bound), defined, signatures, not is_dynamic, counts, read_methods(tree))
 
 
 class _PythonFiles:
@@ -349,13 +388,7 @@ class _Caller:
             elif name in self._lost.changed:
                 old, new = self._lost.changed[name]
                 if old.fits(node) and not new.fits(node):
-                    text = phrase(
-                        "calls '{name}' of '{file}' with the old arguments; the new ones are {arguments}",
-                        name=name,
-                        file=self._lost.path,
-                        arguments=new.text,
-                    )
-                    yield self._make_change(text, phrase("the call fails"), node)
+                    yield _make_call_change(self._path, self._lost.path, name, new, node)
 
     def _check_unpacking(self, node: ast.Assign, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
         """Yield a change if a statement unpacks the old number of values that a function returns."""

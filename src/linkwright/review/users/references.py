@@ -14,6 +14,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.programs.missing import RepositoryPackage, find_packages
 from linkwright.review.launches.programs.script_options import find_refused_options
+from linkwright.review.launches.switched_off_files import is_switched_off
 from linkwright.review.renames.packages import PackageNames, find_renamed_packages
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.users.installed_readers import find_named_paths
@@ -38,7 +39,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
 
     A missing file exists only in the old version, or a changed launch file names it for the first time.
     So is a file that the build file does not install, although it installs the launch file. Both are not breaking in an
-    added launch file, which has no users yet.
+    added launch file, which has no users yet, or if only a new argument that is off by default needs the file.
     A script does not accept a refused option.
     """
     yield from find_refused_options(versions, changed_files)
@@ -72,6 +73,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
                         old_path is None
                         or _replaces_missing(versions.old, old_path, package, subpath, dropped)
                         or _is_beside_others(versions, path, package, subpath, known - dropped)
+                        or is_switched_off(versions, path, old_path, package, subpath)
                     )
                     yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_harmless else change
 

@@ -23,6 +23,7 @@ from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.common_files import find_known_files
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import CONDITION, PROGRAM_KINDS, Entry
+from linkwright.review.launches.programs.generation import may_make_files
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.renames.packages import find_renamed_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -31,12 +32,6 @@ from linkwright.xacro.cache import read_document
 _BUILD_SUFFIXES = ("CMakeLists.txt", ".cmake", "setup.py", "setup.cfg", "pyproject.toml")
 _PROGRAM_KINDS = (FactKind.EXECUTABLE, FactKind.BUILT_EXECUTABLE)
 _SCRIPT_SUFFIXES = (".py", ".sh", ".bash", ".pl", ".rb")
-_GENERATION = re.compile(
-    r"\b(?:RENAME|configure_file|add_custom_command|add_custom_target|execute_process|ExternalProject_Add"
-    r"|FetchContent_\w+|file\s*\(\s*(?:GENERATE|WRITE|DOWNLOAD|COPY))\b",
-    re.IGNORECASE,
-)
-"""A command of a build file that can make a script with another name."""
 _STARTS = (
     "starts '{package}/{name}', which does not exist",
     "starts '{package}/{name}', which is no longer installed",
@@ -132,8 +127,7 @@ class RepositoryPackage:
     def may_generate(self) -> bool:
         """Whether the build can make files, or a part of the package is in another repository."""
         submodules = map(PurePosixPath, self.version.submodules)
-        commands = _COMMENT.sub("", self.build_text)  # the comments of catkin's template tell how to rename a program
-        return _GENERATION.search(commands) is not None or any(path.is_relative_to(self.folder) for path in submodules)
+        return may_make_files(self.build_text) or any(path.is_relative_to(self.folder) for path in submodules)
 
     @cached_property
     def may_compute_names(self) -> bool:

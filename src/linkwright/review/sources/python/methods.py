@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.review.caching import cached_in_review
-from linkwright.review.sources.names import PYTHON_SUFFIX, OwnUse
+from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.python.bases import find_class, find_inherited_names
 from linkwright.review.versions import Version
 
@@ -47,7 +47,7 @@ def find_undefined_attributes(path: Path, tree: ast.Module) -> dict[str, tuple[a
     first_uses: dict[str, tuple[ast.Attribute, str, bool]] = {}
     for definition in (node for node in tree.body if isinstance(node, ast.ClassDef)):
         known = find_known_attributes(path, tree, definition)
-        for node, is_call in _find_own_uses(definition) if known is not None else ():
+        for node, is_call in find_own_uses(definition) if known is not None else ():
             if known is not None and node.attr not in known | looked_up:
                 first_uses.setdefault(node.attr, (node, definition.name, is_call))
     return first_uses
@@ -72,20 +72,20 @@ def find_known_attributes(path: Path, tree: ast.Module, definition: ast.ClassDef
     return frozenset(inherited).union(*map(find_defined_attributes, [tree, *bases]))
 
 
-def is_defined_by_others(version: Version, path: str, use: OwnUse, name: str) -> bool:
+def is_defined_by_others(version: Version, path: str, class_name: str, name: str) -> bool:
     """Return whether another source that names a class may define one of its attributes, such as a derived class.
 
     Args:
         version: the version of the repository.
         path: the path of the source with the class.
-        use: the use of the attribute.
+        class_name: the name of the class.
         name: the name of the attribute.
     """
     definition = re.compile(
         rf"\bdef {name}\b|^\s+{name}\s*[:=]|\.{name}\s*(?::[^=\n]+)?=[^=]|['\"]{name}['\"]", re.MULTILINE
     )
     texts = (version.text(other) for other in version.paths((PYTHON_SUFFIX,)) if other != path)
-    return any(use.class_name in text and definition.search(text) is not None for text in texts)
+    return any(class_name in text and definition.search(text) is not None for text in texts)
 
 
 @cached_in_review(maxsize=_MAX_TREES)
@@ -115,7 +115,7 @@ def _find_bases(
             yield from _find_bases(*found, depth + 1)
 
 
-def _find_own_uses(definition: ast.ClassDef) -> Iterator[tuple[ast.Attribute, bool]]:
+def find_own_uses(definition: ast.ClassDef) -> Iterator[tuple[ast.Attribute, bool]]:
     """Yield the attributes of ``self`` that methods of a class read outside of ``try``, and whether they call them."""
     for method in definition.body:
         if not isinstance(method, (ast.FunctionDef, ast.AsyncFunctionDef)) or not method.args.args:

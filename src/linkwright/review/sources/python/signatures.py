@@ -85,10 +85,12 @@ def is_self_contained(definition: ast.ClassDef) -> bool:
     return is_undecorated and bases in ([], ["object"]) and "__getattr__" not in names
 
 
-def read_method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
-    """Yield the public undecorated methods of a class and their parameters."""
+def read_method_signatures(
+    definition: ast.ClassDef, *, with_private: bool = False
+) -> Iterator[tuple[ast.FunctionDef, Signature]]:
+    """Yield the undecorated methods of a class and their parameters, by default only public ones."""
     for node in definition.body:
-        is_public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+        is_public = isinstance(node, ast.FunctionDef) and (with_private or not node.name.startswith("_"))
         if isinstance(node, ast.FunctionDef) and is_public and not node.decorator_list and node.args.args:
             yield node, _make_signature(node.args, first=1)
 

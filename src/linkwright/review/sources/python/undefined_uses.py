@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
-from linkwright.review.sources.names import OwnUse, SourceNames
+from linkwright.review.sources.names import SourceNames
 
 
 class UndefinedUse(NamedTuple):
@@ -21,7 +21,7 @@ class UndefinedUse(NamedTuple):
 
 
 def find_undefined_uses(
-    old: SourceNames, new: SourceNames, is_defined: Callable[[OwnUse, str], bool], *, is_added: bool
+    old: SourceNames, new: SourceNames, is_defined: Callable[[str, str], bool], *, is_added: bool
 ) -> Iterator[UndefinedUse]:
     """Yield the undefined names, attributes and methods that only the new version of a source uses.
 
@@ -30,7 +30,7 @@ def find_undefined_uses(
     Args:
         old: the names in the old source.
         new: the names in the new source.
-        is_defined: whether another source may define an attribute that a class uses, by its use and name.
+        is_defined: whether another source may define an attribute, by the name of the class that uses it and its name.
         is_added: whether only the new version has the source.
     """
     for name, span in new.undefined_names.items():
@@ -45,7 +45,7 @@ def find_undefined_uses(
     for name, use in new.undefined_attributes.items() if not is_added and old.bound_names else ():
         is_lost = name in old.attributes
         is_certain = is_lost or not (name.startswith("_") or old.undefined_attributes)  # a base class may have it
-        if not is_certain or is_defined(use, name):
+        if not is_certain or is_defined(use.class_name, name):
             continue
         if use.is_call:
             lost = phrase("calls its method '{name}', which is no longer defined", name=name)
