@@ -241,7 +241,7 @@ def _list_files(root: Path, folder: str) -> tuple[str, ...]:
 
 
 def _is_regular(path: str) -> bool:
-    """Return whether a path is that of a file which is no symbolic link."""
+    """Return whether a path is that of a regular file, not of a symbolic link to one."""
     try:
         return stat.S_ISREG(os.lstat(path).st_mode)
     except OSError:
