@@ -100,6 +100,7 @@ class PackageFinder:
         self._sources_first = sources_first
         self._hidden = frozenset(hidden)
         self._scans: dict[Path, SourceScan] = {}
+        self._enclosing: dict[Path, tuple[str, Path] | None] = {}
         self._shares: dict[str, Path] = {}
         self._suggestions: dict[str, tuple[Phrase | None, bool]] = {}
         self._locations: list[Phrase] = []
@@ -118,6 +119,7 @@ class PackageFinder:
             hidden=self._hidden,
         )
         finder._scans = self._scans
+        finder._enclosing = self._enclosing
         return finder
 
     @property
@@ -213,6 +215,7 @@ class PackageFinder:
         self._shares.clear()
         self._suggestions.clear()
         self._scans.clear()
+        self._enclosing.clear()
 
     # --- locations ------------------------------------------------------------------------------------------
 
@@ -273,15 +276,17 @@ class PackageFinder:
         return (folder.parent for folder in self._start_folders_and_parents() if ament.is_share_of_prefix(folder))
 
     def _enclosing_packages(self) -> Iterator[tuple[str, Path]]:
-        for start in self._starts:
-            package = enclosing_package(start)
-            if package:
-                yield package
+        return (package for package in map(self._find_enclosing, self._starts) if package)
+
+    def _find_enclosing(self, start: Path) -> tuple[str, Path] | None:
+        if start not in self._enclosing:
+            self._enclosing[start] = enclosing_package(start)
+        return self._enclosing[start]
 
     def _source_roots(self) -> Iterator[Path]:
         roots: dict[Path, None] = {}
         for start in self._starts:
-            package = enclosing_package(start)
+            package = self._find_enclosing(start)
             if package:
                 roots[package[1].parent] = None
             else:

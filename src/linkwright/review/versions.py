@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
@@ -29,6 +30,7 @@ from linkwright.packages.manifest import (
 )
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files, find_generated_folders, split_generated
+from linkwright.review.caching import cached_in_review
 from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts, is_of_ros1
 from linkwright.xmltree import Overlay
 
@@ -86,15 +88,10 @@ class Version:
 
         The result is empty if the file is unreadable or larger than 1 MiB.
         """
-        file = self.file(path)
-        try:
-            is_small = file.stat().st_size <= _MAX_SEARCHED_BYTES
-            return file.read_bytes().decode("utf-8", errors="replace") if is_small else ""
-        except OSError:
-            return ""
+        return _read_text(self.root, path)
 
     def paths(self, suffixes: tuple[str, ...], folder: str = "") -> Iterator[str]:
-        """Yield the paths of files relative to the root, sorted by folder.
+        """Return the paths of files relative to the root, sorted by folder.
 
         Symbolic links, hidden folders, and folders that builds write are skipped.
 
@@ -102,12 +99,7 @@ class Version:
             suffixes: the endings of the names.
             folder: the folder to search, relative to the root; empty for all.
         """
-        for parent, folders, names in os.walk(self.file(folder)):
-            folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
-            for name in sorted(names):
-                file = Path(parent, name)
-                if name.endswith(suffixes) and file.is_file() and not file.is_symlink():
-                    yield file.relative_to(self.root).as_posix()
+        return (path for path in _list_files(self.root, folder) if path.endswith(suffixes))
 
     def package_of(self, path: str, manifests: Collection[str] = (MANIFEST,)) -> str | None:
         """Return the folder of the package that contains a file, or None if there is none.
@@ -119,10 +111,8 @@ class Version:
         Returns:
             The nearest such folder relative to the root; empty for the root.
         """
-        for parent in PurePosixPath(path).parents:
-            if any((self.root / parent / name).is_file() for name in manifests):
-                return "" if parent == PurePosixPath(".") else parent.as_posix()
-        return None
+        parents = PurePosixPath(path).parents
+        return _find_package(self.root, parents[0], tuple(manifests)) if parents else None
 
     def finder(self, folder: Path) -> PackageFinder:
         """Return the finder of packages for a file's folder."""
@@ -229,6 +219,44 @@ class Version:
     @cached_property
     def _working_tree_finder(self) -> PackageFinder:
         return PackageFinder(start=[self.root, Path.cwd()], sources_first=True)
+
+
+@cached_in_review(maxsize=1 << 16)
+def _find_package(root: Path, folder: PurePosixPath, manifests: tuple[str, ...]) -> str | None:
+    """Return the nearest package that contains a folder relative to the root; see `Version.package_of`."""
+    if any((root / folder / name).is_file() for name in manifests):
+        return "" if folder == PurePosixPath(".") else folder.as_posix()
+    return _find_package(root, folder.parent, manifests) if folder.parents else None
+
+
+@cached_in_review(maxsize=256)
+def _list_files(root: Path, folder: str) -> tuple[str, ...]:
+    """Return the paths of all files in a folder relative to the root; see `Version.paths`."""
+    paths: list[str] = []
+    for parent, folders, names in os.walk(root / folder):
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+        path = Path(parent).relative_to(root)
+        paths += ((path / name).as_posix() for name in sorted(names) if _is_regular(f"{parent}{os.sep}{name}"))
+    return tuple(paths)
+
+
+def _is_regular(path: str) -> bool:
+    """Return whether a path is that of a regular file, not of a symbolic link to one."""
+    try:
+        return stat.S_ISREG(os.lstat(path).st_mode)
+    except OSError:
+        return False
+
+
+@cached_in_review(maxsize=64)
+def _read_text(root: Path, path: str) -> str:
+    """Return the text of a file at a path relative to the root; see `Version.text`."""
+    file = root / path
+    try:
+        is_small = file.stat().st_size <= _MAX_SEARCHED_BYTES
+        return file.read_bytes().decode("utf-8", errors="replace") if is_small else ""
+    except OSError:
+        return ""
 
 
 def _count_common_parts(package: Path, folder: Path) -> int:

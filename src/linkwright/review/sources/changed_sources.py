@@ -71,7 +71,8 @@ class ChangedSources:
 
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
-        return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+        names = None if path is None else self._names.get(path)
+        return SourceNames() if names is None else names
 
     def get_inherited(self, path: str | None) -> list[SourceNames]:
         """Return the names in the sources of the base classes of a C++ source."""

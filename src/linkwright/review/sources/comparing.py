@@ -254,7 +254,7 @@ class _SourcePair(PairedNames):
         Functions count only if other files can call them.
         """
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
-        is_called = not is_program and self.is_interface(self.file.old_path or self.file.path)
+        is_called = bool(changed) and not is_program and self.is_interface(self.file.old_path or self.file.path)
         if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
         if kind is NameKind.FUNCTION:

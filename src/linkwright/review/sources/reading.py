@@ -33,6 +33,7 @@ def is_generated(text: str) -> bool:
     return _GENERATED.search(text[:_HEADER_CHARACTERS]) is not None
 
 
+@cached_in_review(maxsize=64)
 def try_read_source(path: Path) -> SourceText | None:
     """Return the text of a source, or None if it cannot be read or is too large.
 
