@@ -102,7 +102,8 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     """
     files = [file for file in changed_files if is_compared_source(versions, file)]
     files += [file for file in find_constant_users(versions, files) if is_compared_source(versions, file)]
-    new_packages = {i.old_name: i.new_name for i in find_renamed_packages(versions) if i.old_name != i.new_name}
+    packages = find_renamed_packages(versions)
+    new_packages = {item.old_name: item.new_name for item in packages if item.old_name != item.new_name}
     sides = (
         ChangedSources(versions.old, [file.old_path for file in files], new_packages),
         ChangedSources(versions.new, [file.new_path for file in files]),
