@@ -262,8 +262,12 @@ def _is_new_script(versions: Versions, subject: Subject) -> bool:
     path, new = subject.path, versions.new
     if subject.old_path is not None or versions.old.file(path).is_file() or not is_python_source(path):
         return False
-    word = re.compile(rf"(?<!\w){re.escape(PurePosixPath(path).stem)}(?!\w)")
-    return not any(word.search(new.text(other)) for other in new.paths(_CALLER_SUFFIXES) if other != path)
+    if all(change.sentence.template not in _ADDITIONS for change in subject.changes):
+        return False  # there is nothing to mark
+    name = PurePosixPath(path).stem
+    word = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)")
+    texts = (new.text(other) for other in new.paths(_CALLER_SUFFIXES) if other != path)
+    return not any(name in text and word.search(text) for text in texts)
 
 
 def _is_about(finding: Diagnostic, path: str) -> bool:
