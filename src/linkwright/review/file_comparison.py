@@ -23,7 +23,7 @@ from linkwright.review.installed_paths import (
     keeps_type,
 )
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
-from linkwright.review.launches.python.imports import find_failing_imports
+from linkwright.review.launches.imports import find_failing_imports
 from linkwright.review.launches.python.undefined import find_undefined_names
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names

@@ -28,6 +28,7 @@ from linkwright.review.launches.environment_readers import explain_removed_readi
 from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.harmless_removals import explain_harmless_removal
+from linkwright.review.launches.imports import compare_imports
 from linkwright.review.launches.include_trees import (
     IncludeTree,
     find_moved_remapping,
@@ -57,7 +58,6 @@ from linkwright.review.launches.programs.missing import find_missing_file, lacks
 from linkwright.review.launches.programs.renamed import find_renamed_programs
 from linkwright.review.launches.python.builders import separate_builders
 from linkwright.review.launches.python.conditions import report_object_tests
-from linkwright.review.launches.python.imports import compare_imports
 from linkwright.review.launches.python.object_texts import report_object_texts
 from linkwright.review.launches.python.old_keywords import report_old_keywords
 from linkwright.review.launches.python.other_code import drop_common_parts, outside

@@ -11,7 +11,6 @@ from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.files.build.facts import FactKind
 from linkwright.review.files.build.setup_files import SETUP_FILE
-from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version
 
 _COMMENT = re.compile(r"#[^\n]*")
@@ -65,7 +64,7 @@ def _is_python_without_interfaces(version: Version, package: str) -> bool:
     setup = version.text(f"{package}/{SETUP_FILE}".lstrip("/"))
     if not setup or _SETUP_GENERATOR.search(setup) is not None or _read_build_files(version, package):
         return False
-    return all(_READER.search(version.text(path)) is None for path in version.paths((PYTHON_SUFFIX,), package))
+    return all(_READER.search(version.text(path)) is None for path in version.paths((".py",), package))
 
 
 def _finds(words: str, name: str) -> bool:
