@@ -23,8 +23,8 @@ from tests.repository_tools import load_tool
 settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
 
-# Hypothesis also draws constants of all imported modules: other examples in each worker, which takes 6 s of the processor
-# to read them.
+# Hypothesis also draws constants of all imported modules, which are others in each worker. To read them takes a worker
+# 6 s of the processor.
 if hasattr(providers, "_get_local_constants"):
     providers._get_local_constants = lambda: providers._local_constants
 
