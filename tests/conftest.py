@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
-from hypothesis.internal.conjecture import providers
 
 from tests.domains import own_domain
 from tests.forked import ForkServer
@@ -22,11 +21,6 @@ from tests.repository_tools import load_tool
 # The duration of an example depends on the machine's load. With CI set, hypothesis draws the same examples each time.
 settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
-
-# Hypothesis also draws constants of all imported modules, which are others in each worker. To read them takes a worker
-# 6 s of the processor.
-if hasattr(providers, "_get_local_constants"):
-    providers._get_local_constants = lambda: providers._local_constants
 
 _MODULE_OF_EXTRA = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.extra\(", re.MULTILINE)
 
