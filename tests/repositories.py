@@ -8,8 +8,6 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.direct_commits import DirectCommits
-
 Files = Mapping[str, "str | bytes | None"]
 
 _SETTINGS = {
@@ -18,7 +16,6 @@ _SETTINGS = {
     "protocol.file.allow": "always",
     "maintenance.auto": "false",  # a process after each commit
 }
-_AUTHOR = f"{_SETTINGS['user.name']} <{_SETTINGS['user.email']}>"
 _OPTIONS = [word for name, value in _SETTINGS.items() for word in ("-c", f"{name}={value}")]
 
 PACKAGE_XML = """<?xml version="1.0"?>
@@ -97,7 +94,6 @@ class Repository:
             (folder / name).mkdir(parents=True)
         (folder / "config").write_text(_new_configuration(), encoding="utf-8")  # much faster than `git init`
         (folder / "HEAD").write_text("ref: refs/heads/main\n")
-        self._direct_commits = DirectCommits(root, _new_configuration(), _AUTHOR)
 
     def git(self, *words: str) -> str:
         result = subprocess.run(
@@ -118,9 +114,6 @@ class Repository:
     def commit(self, files: Files, message: str = "A change") -> str:
         """Write files, commit them, and return the hash of the commit."""
         self.write(files)
-        commit = self._direct_commits.commit(message)
-        if commit is not None:
-            return commit
         self.git("add", "--all")
         self.git("commit", "--quiet", "--allow-empty", "--message", message)
         return self._read_head() or self.git("rev-parse", "HEAD")
