@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from pathlib import Path
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted
 from linkwright.packages.readers.python_values import PythonFile
@@ -13,7 +12,7 @@ from linkwright.review.installed_paths import find_module
 from linkwright.review.launches.files import compare_launch_files
 from linkwright.review.sources.details import compare_details
 from linkwright.review.sources.names import NameKind
-from linkwright.review.sources.reading import read_source_names, try_read_source
+from linkwright.review.sources.reading import read_source_names, try_parse
 from linkwright.review.versions import Version
 
 _Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -25,7 +24,7 @@ def compare_launch_helpers(pair: FilePair) -> None:
     package = pair.versions.old.package_of(pair.old_path)
     if pair.is_lost or package is None or find_module(pair.versions.old, package, pair.old_path) is None:
         return
-    old, new = _try_parse(pair.old_file), _try_parse(pair.new_file)
+    old, new = try_parse(pair.old_file), try_parse(pair.new_file)
     if old is None or new is None:
         return
     left = _find_names(new)
@@ -58,14 +57,6 @@ def _compare_functions(pair: FilePair) -> None:
             changes = compare_details(before[item.name], item) if item.name in before else ()
             for text, reason, _ in changes:
                 pair.add(text, pair.location(item.span), reason)
-
-
-def _try_parse(path: Path) -> PythonFile | None:
-    source = try_read_source(path)
-    try:
-        return None if source is None else PythonFile(source)
-    except (SyntaxError, ValueError, RecursionError):
-        return None
 
 
 def _find_names(python: PythonFile) -> set[str]:

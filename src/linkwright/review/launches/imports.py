@@ -9,13 +9,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
-from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.changes import MAX_NAMES, Change, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.programs.missing import find_packages
 from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.sources.names import PYTHON_SUFFIX
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.reading import try_parse
 from linkwright.review.versions import Version, Versions
 
 _LAUNCH_MODULES = frozenset({"ament_index_python", "launch", "launch_ros", "osrf_pycommon"})
@@ -72,7 +71,7 @@ def _find_missing_modules(version: Version, path: str) -> Iterator[tuple[str, Sp
 
     The package is the one in the ROS package of the same name, whose build makes no modules.
     """
-    python = _try_parse(version.file(path))
+    python = try_parse(version.file(path))
     if python is None:
         return
     for node in python.tree.body:
@@ -125,7 +124,7 @@ def _read_imports(path: Path) -> dict[str, tuple[str, Span]] | None:
 
     The result is None if the file cannot be read.
     """
-    python = _try_parse(path)
+    python = try_parse(path)
     if python is None:
         return None
     imports: dict[str, tuple[str, Span]] = {}
@@ -141,11 +140,3 @@ def _read_imports(path: Path) -> dict[str, tuple[str, Span]] | None:
             if module not in _LAUNCH_MODULES and module not in sys.stdlib_module_names:
                 imports.setdefault(module, (ast.unparse(node), python.span(node)))
     return imports
-
-
-def _try_parse(path: Path) -> PythonFile | None:
-    source = try_read_source(path)
-    try:
-        return None if source is None else PythonFile(source)
-    except (SyntaxError, ValueError, RecursionError):
-        return None

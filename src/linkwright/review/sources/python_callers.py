@@ -183,9 +183,10 @@ def _find_own_failures(versions: Versions, file: ChangedFile) -> Iterator[Change
     before, after = old.signatures | old.methods, new.signatures | new.methods
     changed = [name for name in before if name in after and before[name].text != after[name].text]
     for name, call in sorted(find_own_calls(tree, changed), key=lambda item: item[1].lineno):
+        if not before[name].fits(call) or after[name].fits(call):
+            continue
         class_name, _, method = name.rpartition(".")
-        is_replaced = bool(class_name) and is_defined_by_others(versions.new, path, class_name, method)
-        if before[name].fits(call) and not after[name].fits(call) and not is_replaced:
+        if not class_name or not is_defined_by_others(versions.new, path, class_name, method):
             yield _make_call_change(path, path, name, after[name], call)
 
 

@@ -102,3 +102,12 @@ def is_program_text(path: Path) -> bool:
     if path.suffix == DYNAMIC_SUFFIX:
         return b"ParameterGenerator" in head
     return head.startswith(b"#!") and _PYTHON_NAME in head.splitlines()[0]
+
+
+def try_parse(path: Path) -> PythonFile | None:
+    """Return a Python file with its syntax tree, or None if it cannot be read."""
+    source = try_read_source(path)
+    try:
+        return None if source is None else PythonFile(source)
+    except (SyntaxError, ValueError, RecursionError):
+        return None

@@ -18,6 +18,8 @@ _ASSIGNED = re.compile(
     re.MULTILINE,
 )
 _DECLARED = r"(?:Publisher\w*|SharedPtr|Ptr|>)\s+{variable}\s*(?:;|=\s*(?:nullptr|None)\b|\{{)"
+_PUBLISHED = re.compile(r"\b(\w+)\s*(?:\.|->)\s*publish\s*\(")
+"""A call with which a variable publishes a message."""
 _BY_TEXT = re.compile(r"\b(?:getattr|vars|__dict__)\b")
 """Code that can use an attribute without its name."""
 
@@ -47,14 +49,15 @@ def find_silent_publishers(old: Version, new: Version, file: ChangedFile, names:
     """
     if file.old_path is None or file.new_path is None:
         return []
-    text = without_comments(old.text(file.old_path), file.old_path)
-    unused = [(item, _find_unused_variable(item, names, new, file.new_path)) for item in names.names]
+    text, new_text = (
+        without_comments(version.text(path), path) for version, path in ((old, file.old_path), (new, file.new_path))
+    )
+    silent = set(_PUBLISHED.findall(text)).difference(_PUBLISHED.findall(new_text))
     return [
         item
-        for item, variable in unused
-        if variable is not None
-        and re.search(rf"[\"']{re.escape(item.name)}[\"']", text)
-        and re.search(rf"\b{variable}\s*(?:\.|->)\s*publish\s*\(", text)
+        for item in (names.names if silent else ())
+        if re.search(rf"[\"']{re.escape(item.name)}[\"']", text)
+        and _find_unused_variable(item, names, new, file.new_path) in silent
     ]
 
 

@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.setup_py import Program, SetupFile, read_setup
+from linkwright.review.caching import cached_in_review
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.files.build.setup_files import SETUP_FILE
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -54,6 +55,7 @@ def find_lost_entry_points(versions: Versions, changed_files: Sequence[ChangedFi
             yield setup_path, Change(text, Effect.BREAKING, phrase("the executable no longer starts"), location)
 
 
+@cached_in_review(maxsize=64)
 def _read_setup(version: Version, path: str) -> SetupFile:
     return read_setup(SourceText(str(version.file(path)), version.text(path)))
 
